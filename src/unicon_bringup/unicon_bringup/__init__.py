@@ -1,0 +1,1 @@
+"""Starts the nodes of an avatar together."""
