@@ -25,15 +25,10 @@ from typing import Any, NamedTuple
 from array_api_compat import array_namespace
 
 from unicon import rotations
-from unicon.humanoid import HUMANOID
 from unicon.humanoid.kinematics import BodyKinematics, forward_kinematics
-from unicon.state import CharacterState
+from unicon.state import CharacterState, stack
 
 Array = Any
-
-_PARENTS = HUMANOID.parents[1:].tolist()
-"""The parent of each body but the root."""
-
 
 class RewardTerms(NamedTuple):
     """The five terms, each ``(...)`` within 0..1, 1 where the target is met exactly."""
@@ -69,28 +64,19 @@ class TrackingErrors(NamedTuple):
 
 def tracking_errors(actual: CharacterState, target: CharacterState) -> TrackingErrors:
     """Return the five squared errors between states ``(...)``."""
-    return tracking_errors_from_kinematics(
-        actual, target, forward_kinematics(actual), forward_kinematics(target)
-    )
-
-
-def tracking_errors_from_kinematics(
-    actual: CharacterState,
-    target: CharacterState,
-    actual_kinematics: BodyKinematics,
-    target_kinematics: BodyKinematics,
-) -> TrackingErrors:
-    """Return the five squared errors ``(...)`` where the bodies of both are known already."""
     xp = array_namespace(actual.root_pos_w)
+    both = stack([actual, target])
+    bodies = forward_kinematics(both)
+    pos_h = _joint_positions(both, bodies)
     turn = rotations.multiply(rotations.conjugate(actual.root_quat_w), target.root_quat_w)
-    mine, wanted = _joints(actual, actual_kinematics), _joints(target, target_kinematics)
-    joint_turn = rotations.multiply(rotations.conjugate(mine.quat), wanted.quat)
+    quat, spin = bodies.local_quat[..., 1:, :], bodies.local_ang_vel[..., 1:, :]
+    joint_turn = rotations.multiply(rotations.conjugate(quat[0, ...]), quat[1, ...])
     return TrackingErrors(
         root_position=_square(xp, target.root_pos_w - actual.root_pos_w),
         root_rotation=rotations.angle(turn) ** 2,
-        joint_position=xp.mean(_square(xp, wanted.pos_h - mine.pos_h), axis=-1),
+        joint_position=xp.mean(_square(xp, pos_h[1, ...] - pos_h[0, ...]), axis=-1),
         joint_rotation=xp.mean(rotations.angle(joint_turn) ** 2, axis=-1),
-        joint_velocity=xp.mean(_square(xp, wanted.ang_vel - mine.ang_vel), axis=-1),
+        joint_velocity=xp.mean(_square(xp, spin[1, ...] - spin[0, ...]), axis=-1),
     )
 
 
@@ -120,24 +106,11 @@ def breaks_constraint(
     return xp.any(~(xp.stack(list(terms), axis=-1) >= config.threshold), axis=-1)
 
 
-class _Joints(NamedTuple):
-    """The 19 bodies but the root, seen from their parents."""
-
-    pos_h: Array
-    quat: Array
-    ang_vel: Array
-
-
-def _joints(state: CharacterState, kinematics: BodyKinematics) -> _Joints:
+def _joint_positions(state: CharacterState, bodies: BodyKinematics) -> Array:
+    """Return where the 19 bodies but the root are ``(..., 19, 3)`` [m], in the heading frame."""
     heading = rotations.heading(state.root_quat_w)[..., None, :]
-    offset_w = kinematics.pos_w[..., 1:, :] - state.root_pos_w[..., None, :]
-    parent_quat_w = kinematics.quat_w[..., _PARENTS, :]
-    spin_w = kinematics.ang_vel_w[..., 1:, :] - kinematics.ang_vel_w[..., _PARENTS, :]
-    return _Joints(
-        pos_h=rotations.rotate_inverse(heading, offset_w),
-        quat=rotations.multiply(rotations.conjugate(parent_quat_w), kinematics.quat_w[..., 1:, :]),
-        ang_vel=rotations.rotate_inverse(parent_quat_w, spin_w),
-    )
+    offset_w = bodies.pos_w[..., 1:, :] - state.root_pos_w[..., None, :]
+    return rotations.rotate_inverse(heading, offset_w)
 
 
 def _square(xp: Any, vectors: Array) -> Array:
