@@ -1,275 +1,205 @@
-"""Target frames as they arrive, and the checks that they pass before anything else sees them.
+"""Target messages as they come from outside, and the check that lets only sound ones through.
 
-A scheduler may be anybody's program, so nothing about a message is trusted: the cheap facts are looked
-at first (names and counts), then all numbers of all frames at once. A message that breaks one rule is
-dropped whole. What depends on time or on earlier messages (``BAD_TIME`` against the present tick,
-``OLD_SEQUENCE``) is judged where it is known, in ``unicon.target_sources``.
+A raw message may hold anything: arrays of any length, NaN, numbers without measure. `check` turns it into
+`TargetFrames`, on which everything else may rely, or says why it is refused. Cheap tests come first, so
+that a hostile message costs little.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from unicon import rotations
-from unicon.humanoid import HUMANOID, Humanoid
+from unicon.errors import UniconError
+from unicon.humanoid import HUMANOID
 from unicon.state import CharacterState
 
-MAX_FRAMES = 64
-MAX_SOURCE_LENGTH = 64
-MAX_SEQUENCE = 2**64 - 1
-MAX_TIME_NS = 2**62
-"""Latest time that a message may name [ns]; sums of such times still fit into 64 bits."""
+JOINTS = len(HUMANOID.joint_names)
+FRAME_SIZE = 3 + 4 + 3 + 3 + 2 * JOINTS
 NS_PER_S = 1_000_000_000
 
 
 class RejectReason(StrEnum):
-    """Why a target message was dropped; counted by these names in status and diagnostics."""
+    """Why a target message was refused."""
 
-    NOT_FINITE = "not_finite"
-    """A number of a frame is infinite, not a number, or no number at all."""
-    WRONG_JOINT_COUNT = "wrong_joint_count"
-    """An array of a frame has the wrong length: 35 joints, 3 for vectors, 4 for the quaternion."""
-    WRONG_HUMANOID = "wrong_humanoid"
-    """The frames were made for another humanoid."""
-    NOT_UNIT_QUATERNION = "not_unit_quaternion"
-    """A root rotation's length is not 1."""
-    OLD_SEQUENCE = "old_sequence"
-    """The source has already sent this sequence number or a later one, or it is no 64-bit number."""
-    NO_FRAMES = "no_frames"
-    """The message is empty."""
-    TOO_MANY_FRAMES = "too_many_frames"
-    """More than 64 frames."""
-    BAD_INTERVAL = "bad_interval"
-    """The time between frames is not within 1 ms to 1 s."""
-    BAD_TIME = "bad_time"
-    """The frames lie too far in the past or the future, or before the epoch."""
-    OUT_OF_RANGE = "out_of_range"
-    """A position, speed or angle is absurd, though finite."""
     BAD_SOURCE = "bad_source"
-    """The source's name is empty, too long or not printable, or there are too many live sources."""
-    OVERFLOW = "overflow"
-    """Too many messages came before the next tick; the oldest ones gave way."""
+    WRONG_HUMANOID = "wrong_humanoid"
+    NO_FRAMES = "no_frames"
+    TOO_MANY_FRAMES = "too_many_frames"
+    BAD_INTERVAL = "bad_interval"
+    BAD_TIME = "bad_time"
+    WRONG_LENGTH = "wrong_length"
+    NOT_FINITE = "not_finite"
+    NOT_UNIT_QUATERNION = "not_unit_quaternion"
+    OUT_OF_RANGE = "out_of_range"
+    OLD_SEQUENCE = "old_sequence"
 
 
-class RejectedTargets(Exception):
-    """A target message broke a rule; it is dropped and counted, never shown as an error."""
+class RejectedTargetsError(UniconError):
+    """A target message was refused; ``reason`` says by which rule."""
 
     def __init__(self, reason: RejectReason, detail: str) -> None:
-        super().__init__(f"{reason}: {detail}")
+        super().__init__(f"target message refused ({reason.value}): {detail}")
         self.reason = reason
-        self.detail = detail
 
 
 @dataclass(frozen=True)
-class TargetLimits:
-    """What is still believable of a person; wide, since they only stop nonsense."""
+class RawFrame:
+    """One frame as it came; the arrays may have any length."""
 
-    position_m: float = 1e4
-    """Largest horizontal coordinate of the root [m]."""
-    lowest_root_m: float = -1.0
-    """Lowest height of the root [m]; the floor is at 0."""
-    highest_root_m: float = 10.0
-    """Greatest height of the root [m]."""
-    speed_m_s: float = 100.0
-    """Largest component of the root's velocity [m/s]."""
-    spin_rad_s: float = 200.0
-    """Largest component of the root's angular velocity, and largest hinge velocity [rad/s]."""
-    angle_rad: float = 4.0 * math.pi
-    """Largest hinge angle [rad]."""
-    unit_tolerance: float = 1e-3
-    """How far a quaternion's length may be from 1; within it, it is normalised."""
-    shortest_interval_s: float = 0.001
-    """Shortest time between frames [s]."""
-    longest_interval_s: float = 1.0
-    """Longest time between frames [s]."""
-    oldest_s: float = 10.0
-    """A message whose last frame lies this long before the present tick is dropped [s]."""
-    furthest_s: float = 60.0
-    """A message whose first frame lies this long after the present tick is dropped [s]."""
+    root_pos_w: np.ndarray
+    root_quat_w: np.ndarray
+    """w, x, y, z."""
+    root_lin_vel_w: np.ndarray
+    root_ang_vel_w: np.ndarray
+    joint_pos: np.ndarray
+    joint_vel: np.ndarray
 
 
-class RawFrame(NamedTuple):
-    """One frame as it came: nothing is known about the arrays, not even their lengths."""
-
-    root_pos_w: Any
-    """Should be ``(3,)`` [m]."""
-    root_quat_w: Any
-    """Should be ``(4,)``, w x y z."""
-    root_lin_vel_w: Any
-    """Should be ``(3,)`` [m/s]."""
-    root_ang_vel_w: Any
-    """Should be ``(3,)`` [rad/s]."""
-    joint_pos: Any
-    """Should be ``(35,)`` [rad]."""
-    joint_vel: Any
-    """Should be ``(35,)`` [rad/s]."""
-
-
-class RawTargetFrames(NamedTuple):
-    """One message of a scheduler as it came."""
+@dataclass(frozen=True)
+class RawTargetFrames:
+    """A target message as it came."""
 
     source: str
-    """Who publishes."""
     sequence: int
-    """Rises with each message of a source."""
     humanoid_id: str
-    """``Humanoid.id`` of the humanoid that the frames are for."""
     time_ns: int
-    """Time of the first frame [ns]."""
+    """Time of the first frame."""
     interval_s: float
-    """Time from one frame to the next [s]."""
     frames: Sequence[RawFrame]
-    """One or more frames in the order of their times."""
 
 
 @dataclass(frozen=True)
 class TargetFrames:
-    """A checked message: finite, in range, right lengths, unit quaternions."""
+    """A sound target message: F frames at rising times."""
 
     source: str
-    """Who publishes."""
     sequence: int
-    """Rises with each message of a source."""
     times_ns: np.ndarray
-    """Times of the frames ``(F,)`` int64 [ns], rising."""
+    """``(F,)`` int64."""
     frames: CharacterState
-    """The frames, a batch ``(F,)`` of read-only arrays."""
+    """Batch ``(F,)``."""
 
 
-def check(
-    raw: RawTargetFrames,
-    humanoid: Humanoid = HUMANOID,
-    limits: TargetLimits = TargetLimits(),  # noqa: B008 - frozen, so shared safely
-) -> TargetFrames:
-    """Return the message as arrays of known shape, or refuse it.
+@dataclass(frozen=True)
+class TargetLimits:
+    """What a sound message may hold."""
+
+    max_frames: int = 64
+    max_source_length: int = 64
+    min_interval_s: float = 0.001
+    max_interval_s: float = 1.0
+    max_ahead_s: float = 60.0
+    """How far the first frame may lie after the last tick."""
+    max_behind_s: float = 1.0
+    """How far the last frame may lie before the last tick."""
+    unit_tolerance: float = 1e-3
+    """How far a quaternion's length may be from 1."""
+    max_position_m: float = 1e4
+    max_speed_m_s: float = 100.0
+    max_spin_rad_s: float = 200.0
+    max_angle_rad: float = 4 * np.pi
+    """Largest hinge angle."""
+
+
+FIELD_SIZES = (3, 4, 3, 3, JOINTS, JOINTS)
+_COLUMNS = np.cumsum((0, *FIELD_SIZES))
+
+
+def check(raw: RawTargetFrames, now_ns: int | None, limits: TargetLimits) -> TargetFrames:
+    """Return the message as sound frames; ``now_ns`` is the time of the last tick, if there was one.
 
     Raises:
-        RejectedTargets: with the reason; never anything else, whatever the message holds.
+        RejectedTargetsError: when a rule is broken; nothing of the message may be used.
     """
-    count = _check_names_and_counts(raw, humanoid)
-    interval_ns = _checked_interval_ns(raw.interval_s, limits)
-    time_ns = _checked_time_ns(raw.time_ns)
-    frames = _unpack(_pack(raw.frames, count, len(humanoid.joint_names)))
-    _check_ranges(frames, limits)
-    return TargetFrames(
-        source=raw.source,
-        sequence=int(raw.sequence),
-        times_ns=time_ns + interval_ns * np.arange(count, dtype=np.int64),
-        frames=_with_unit_quaternions(frames, limits),
+    _check_header(raw, limits)
+    _check_time(raw, now_ns, limits)
+    matrix = _gather(raw.frames)
+    _check_numbers(matrix, limits)
+    quat = matrix[:, 3:7]
+    matrix[:, 3:7] = quat / np.linalg.norm(quat, axis=1, keepdims=True)
+    steps = np.arange(len(matrix)) * (raw.interval_s * NS_PER_S)
+    times_ns = raw.time_ns + np.rint(steps).astype(np.int64)
+    return TargetFrames(raw.source, raw.sequence, times_ns, unpack(matrix))
+
+
+def pack(frames: CharacterState) -> np.ndarray:
+    """Return states ``(...)`` as rows ``(..., 83)`` in the order of the fields."""
+    return np.concatenate(list(vars(frames).values()), axis=-1)
+
+
+def unpack(rows: np.ndarray) -> CharacterState:
+    """Return rows ``(..., 83)`` as states ``(...)``, as views."""
+    spans = zip(_COLUMNS[:-1], _COLUMNS[1:], strict=True)
+    return CharacterState(*(rows[..., first:last] for first, last in spans))
+
+
+def _refuse(reason: RejectReason, detail: str) -> RejectedTargetsError:
+    return RejectedTargetsError(reason, detail)
+
+
+def _check_header(raw: RawTargetFrames, limits: TargetLimits) -> None:
+    if not 1 <= len(raw.source) <= limits.max_source_length:
+        length = f"its source has {len(raw.source)} characters, expected 1 to {limits.max_source_length}"
+        raise _refuse(RejectReason.BAD_SOURCE, length)
+    if raw.humanoid_id != HUMANOID.id:
+        other = f"it is for humanoid {raw.humanoid_id[:64]!r}, this is {HUMANOID.id!r}"
+        raise _refuse(RejectReason.WRONG_HUMANOID, other)
+    if not len(raw.frames):
+        raise _refuse(RejectReason.NO_FRAMES, "it has no frames")
+    if len(raw.frames) > limits.max_frames:
+        many = f"it has {len(raw.frames)} frames, at most {limits.max_frames} are allowed"
+        raise _refuse(RejectReason.TOO_MANY_FRAMES, many)
+
+
+def _check_time(raw: RawTargetFrames, now_ns: int | None, limits: TargetLimits) -> None:
+    if not limits.min_interval_s <= raw.interval_s <= limits.max_interval_s:
+        allowed = f"expected {limits.min_interval_s} to {limits.max_interval_s} s"
+        raise _refuse(RejectReason.BAD_INTERVAL, f"its interval is {raw.interval_s} s, {allowed}")
+    if not 0 <= raw.time_ns < 2**62:
+        raise _refuse(RejectReason.BAD_TIME, f"its time {raw.time_ns} ns is no time")
+    if now_ns is None:
+        return
+    ahead_s = (raw.time_ns - now_ns) / NS_PER_S
+    behind_s = -ahead_s - (len(raw.frames) - 1) * raw.interval_s
+    if ahead_s > limits.max_ahead_s or behind_s > limits.max_behind_s:
+        raise _refuse(RejectReason.BAD_TIME, f"its first frame lies {ahead_s:+.3f} s from now")
+
+
+def _gather(frames: Sequence[RawFrame]) -> np.ndarray:
+    """Return the frames as rows ``(F, 83)``, refusing arrays of other lengths."""
+    rows = np.empty((len(frames), FRAME_SIZE))
+    for row, frame in zip(rows, frames, strict=True):
+        arrays = zip(vars(frame).items(), FIELD_SIZES, _COLUMNS[:-1], strict=True)
+        for (name, value), size, start in arrays:
+            if len(value) != size:
+                wrong = f"{name} has {len(value)} numbers, expected {size}"
+                raise _refuse(RejectReason.WRONG_LENGTH, wrong)
+            row[start : start + size] = value
+    return rows
+
+
+def _check_numbers(rows: np.ndarray, limits: TargetLimits) -> None:
+    if not np.isfinite(rows).all():
+        raise _refuse(RejectReason.NOT_FINITE, "it has a number that is not finite")
+    pos, quat, lin_vel, ang_vel, joint_pos, joint_vel = vars(unpack(rows)).values()
+    bounds = (
+        ("root position", pos, limits.max_position_m, "m"),
+        ("root velocity", lin_vel, limits.max_speed_m_s, "m/s"),
+        ("root angular velocity", ang_vel, limits.max_spin_rad_s, "rad/s"),
+        ("joint angle", joint_pos, limits.max_angle_rad, "rad"),
+        ("joint velocity", joint_vel, limits.max_spin_rad_s, "rad/s"),
+        ("quaternion", quat, 2.0, ""),
     )
-
-
-def to_raw(
-    source: str,
-    sequence: int,
-    time_ns: int,
-    interval_s: float,
-    frames: CharacterState,
-    humanoid: Humanoid = HUMANOID,
-) -> RawTargetFrames:
-    """Return the message that a scheduler would send for ``frames``, a batch ``(F,)``."""
-    raw = [RawFrame(*vars(frames[i]).values()) for i in range(frames.batch_shape[0])]
-    return RawTargetFrames(source, sequence, humanoid.id, time_ns, interval_s, raw)
-
-
-def is_source_name(name: object) -> bool:
-    """Say whether ``name`` may name a source: 1 to 64 printable characters."""
-    return isinstance(name, str) and 0 < len(name) <= MAX_SOURCE_LENGTH and name.isprintable()
-
-
-def _check_names_and_counts(raw: RawTargetFrames, humanoid: Humanoid) -> int:
-    """Do what costs nothing first; return the number of frames."""
-    if not is_source_name(raw.source):
-        raise RejectedTargets(RejectReason.BAD_SOURCE, "a source has 1 to 64 printable characters")
-    if raw.humanoid_id != humanoid.id:
-        raise RejectedTargets(RejectReason.WRONG_HUMANOID, f"expected {humanoid.id}")
-    if not (_is_integer(raw.sequence) and 0 <= raw.sequence <= MAX_SEQUENCE):
-        raise RejectedTargets(RejectReason.OLD_SEQUENCE, "a sequence is a number of 64 bits")
-    try:
-        count = len(raw.frames)
-    except TypeError:
-        raise RejectedTargets(RejectReason.NO_FRAMES, "the frames are no sequence") from None
-    if count == 0:
-        raise RejectedTargets(RejectReason.NO_FRAMES, "the message is empty")
-    if count > MAX_FRAMES:
-        raise RejectedTargets(RejectReason.TOO_MANY_FRAMES, f"{count} frames, at most {MAX_FRAMES}")
-    return count
-
-
-def _is_integer(value: object) -> bool:
-    return isinstance(value, int | np.integer) and not isinstance(value, bool)
-
-
-def _checked_interval_ns(interval_s: object, limits: TargetLimits) -> int:
-    valid = isinstance(interval_s, int | float) and not isinstance(interval_s, bool)
-    if not (valid and limits.shortest_interval_s <= interval_s <= limits.longest_interval_s):
-        raise RejectedTargets(RejectReason.BAD_INTERVAL, "an interval is 1 ms to 1 s")
-    return round(interval_s * NS_PER_S)
-
-
-def _checked_time_ns(time_ns: object) -> int:
-    if not (_is_integer(time_ns) and 0 <= time_ns <= MAX_TIME_NS):
-        raise RejectedTargets(RejectReason.BAD_TIME, f"a time is 0 to {MAX_TIME_NS} ns")
-    return int(time_ns)
-
-
-def _pack(frames: Sequence[RawFrame], count: int, joints: int) -> np.ndarray:
-    """Copy all frames into one array ``(F, 13 + 2 joints)``, so that later checks see all at once."""
-    lengths = (3, 4, 3, 3, joints, joints)
-    packed = np.empty((count, sum(lengths)))
-    try:
-        for row, frame in zip(packed, frames, strict=True):
-            start = 0
-            for values, length in zip(frame, lengths, strict=True):
-                if len(values) != length:
-                    raise RejectedTargets(
-                        RejectReason.WRONG_JOINT_COUNT, f"{len(values)} values instead of {length}"
-                    )
-                row[start : start + length] = values
-                start += length
-    except (TypeError, ValueError, OverflowError):
-        raise RejectedTargets(RejectReason.NOT_FINITE, "a value is no number") from None
-    if not np.isfinite(packed).all():
-        raise RejectedTargets(RejectReason.NOT_FINITE, "a value is infinite or not a number")
-    return packed
-
-
-def _unpack(packed: np.ndarray) -> CharacterState:
-    joints = (packed.shape[-1] - 13) // 2
-    return CharacterState(*np.split(packed, [3, 7, 10, 13, 13 + joints], axis=-1))
-
-
-def _check_ranges(frames: CharacterState, limits: TargetLimits) -> None:
-    height = frames.root_pos_w[:, 2]
-    within = (
-        abs(frames.root_pos_w[:, :2]).max() <= limits.position_m
-        and limits.lowest_root_m <= height.min()
-        and height.max() <= limits.highest_root_m
-        and abs(frames.root_lin_vel_w).max() <= limits.speed_m_s
-        and abs(frames.root_ang_vel_w).max() <= limits.spin_rad_s
-        and abs(frames.joint_pos).max() <= limits.angle_rad
-        and abs(frames.joint_vel).max() <= limits.spin_rad_s
-    )
-    if not within:
-        raise RejectedTargets(RejectReason.OUT_OF_RANGE, "a position, speed or angle is absurd")
-
-
-def _with_unit_quaternions(frames: CharacterState, limits: TargetLimits) -> CharacterState:
-    """Normalise the root rotations; the other arrays are passed on."""
-    quat = frames.root_quat_w
-    # Components beyond 2 cannot belong to a unit quaternion, and their squares might overflow.
-    if abs(quat).max() > 2.0:
-        raise RejectedTargets(RejectReason.NOT_UNIT_QUATERNION, "a component is larger than 2")
-    length = np.sqrt((quat * quat).sum(axis=-1))
-    if abs(length - 1.0).max() > limits.unit_tolerance:
-        raise RejectedTargets(RejectReason.NOT_UNIT_QUATERNION, "a root rotation's length is not 1")
-    fields = vars(frames) | {"root_quat_w": rotations.normalize(quat)}
-    for values in fields.values():
-        values.flags.writeable = False
-    return CharacterState(**fields)
+    for name, values, bound, unit in bounds:
+        largest = np.abs(values).max()
+        if largest > bound:
+            far = f"a {name} is {largest:.3g} {unit}, at most {bound:.4g} is allowed"
+            raise _refuse(RejectReason.OUT_OF_RANGE, far)
+    length = np.linalg.norm(quat, axis=1)
+    if np.abs(length - 1.0).max() > limits.unit_tolerance:
+        off = f"a root quaternion has the length {length[np.abs(length - 1).argmax()]:.4f}, expected 1"
+        raise _refuse(RejectReason.NOT_UNIT_QUATERNION, off)
