@@ -65,10 +65,10 @@ class ExecutorNode(Node):
         self._paused = False
         self._last_target_ns: int | None = None
         self._last_shown: tuple[object, ...] = ()
-        self._publishers = ExecutorPublishers(self, values["markers_hz"], self._lockstep)
+        self._outputs = ExecutorPublishers(self, values["markers_hz"], self._lockstep)
         self._diagnostics = Diagnostics(self)
         self._last_time_ns = time.time_ns()
-        self._publishers.publish_start(
+        self._outputs.publish_start(
             self._last_time_ns, {"config": config_to_dict(config), "humanoid_id": HUMANOID.id}
         )
         self._create_interfaces()
@@ -134,7 +134,7 @@ class ExecutorNode(Node):
         """One tick at ``time_ns``, and everything that is told about it."""
         self._last_time_ns = time_ns
         report = self.tracker.tick(time_ns)
-        self._publishers.publish_report(report, self._target_age_s())
+        self._outputs.publish_report(report, self._target_age_s())
         for notice in report.notices:
             self.get_logger().info(notice)
         shown = (report.mode, report.source, self.tracker.policy.name)
@@ -163,7 +163,7 @@ class ExecutorNode(Node):
     def _apply(self, command: Command) -> CommandResult:
         result = self.tracker.apply(command)
         if result.success:
-            self._publishers.publish_event(
+            self._outputs.publish_event(
                 self._last_time_ns, self.tracker.ticks, kind_of(command), to_json(command)
             )
         self._publish_status()
@@ -234,7 +234,7 @@ class ExecutorNode(Node):
         return response
 
     def _publish_status(self) -> None:
-        self._publishers.publish_status(self._status())
+        self._outputs.publish_status(self._status())
 
     def _status(self) -> ExecutorStatus:
         statistics = self._pacer.statistics()
