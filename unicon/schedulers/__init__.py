@@ -1,0 +1,1 @@
+"""Schedulers without ROS: each turns an input into target frames by time."""
