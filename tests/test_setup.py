@@ -1,4 +1,4 @@
-"""Tests for tools/setup.py and setup.bash: what a person reads when something lacks, and the stamps."""
+"""Tests for tools/setup.py and setup.bash: the sentences that a person reads, and the stamps."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SCRIPT = ROOT / "tools" / "setup.py"
 
 @pytest.fixture
 def setup(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The set-up script, with its files in an empty folder and nothing of ROS in the environment."""
+    """The set-up script, working in an empty folder, with nothing of ROS in the environment."""
     module = load_script(SCRIPT)
     monkeypatch.setattr(module, "ROOT", tmp_path)
     monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
@@ -72,7 +72,7 @@ def test_a_full_disk_is_named_with_what_is_needed(setup, monkeypatch):
 def test_an_unreachable_package_index_is_named(setup):
     (setup.VENV / "bin").mkdir(parents=True)
     (setup.VENV / "bin" / "python").symlink_to(sys.executable)
-    nowhere = ["--isolated", "--retries", "0", "--index-url", "http://127.0.0.1:9/simple"]
+    nowhere = ["--isolated", "--retries", "1", "--index-url", "http://127.0.0.1:9/simple"]
     with pytest.raises(setup.SetupError, match="the package index cannot be reached"):
         setup.pip(["install", "--target", str(setup.ROOT / "out"), *nowhere, "six"], "installing")
 

@@ -19,7 +19,7 @@ from unicon.humanoid import HUMANOID
 from unicon.pacing import Pacer, PacerConfig
 from unicon.projectile import Projectile
 from unicon.target_frames import NS_PER_S
-from unicon.tracking import TICK_NS, CommandResult, Mode, Tracker, TrackerConfig, config_to_dict
+from unicon.tracking import TICK_NS, CommandResult, Mode, TickReport, Tracker, TrackerConfig, config_to_dict
 from unicon_msgs.msg import ExecutorStatus, TargetFrames
 from unicon_msgs.srv import LoadPolicy as LoadPolicyService
 from unicon_msgs.srv import Reset as ResetService
@@ -127,14 +127,21 @@ class ExecutorNode(Node):
             executor.spin_once(timeout_sec=0)
         if self._pacer.begin() and not self._pacer_config.slow_motion:
             self.get_logger().warning("fell 100 ms behind; the clock was set anew")
-        self._tick(self._pacer.tick_time_ns)
+        report = self._tick(self._pacer.tick_time_ns)
         self._pacer.finish()
+        self._tell(report)
 
-    def _tick(self, time_ns: int) -> None:
-        """One tick at ``time_ns``, and everything that is told about it."""
+    def _tick(self, time_ns: int) -> TickReport:
+        """One tick at ``time_ns``: targets, policy, physics, and the state that came of it."""
         self._last_time_ns = time_ns
+        age_s = self._target_age_s()
         report = self.tracker.tick(time_ns)
-        self._outputs.publish_report(report, self._target_age_s())
+        self._outputs.publish_state(report, age_s)
+        return report
+
+    def _tell(self, report: TickReport) -> None:
+        """Tell the rest of a tick in the slack before the next."""
+        self._outputs.publish_views(report)
         for notice in report.notices:
             self.get_logger().info(notice)
         shown = (report.mode, report.source, self.tracker.policy.name)
@@ -158,7 +165,7 @@ class ExecutorNode(Node):
             return
         self._last_target_ns = time.monotonic_ns()
         if self._lockstep and not self._paused:
-            self._tick(raw.time_ns - TICK_NS)
+            self._tell(self._tick(raw.time_ns - TICK_NS))
 
     def _apply(self, command: Command) -> CommandResult:
         result = self.tracker.apply(command)
@@ -190,7 +197,7 @@ class ExecutorNode(Node):
         response.success = self._paused and 1 <= request.ticks <= MAX_STEPS
         if response.success:
             for _ in range(request.ticks):
-                self._tick(self._last_time_ns + TICK_NS)
+                self._tell(self._tick(self._last_time_ns + TICK_NS))
             response.message = f"advanced by {request.ticks} ticks"
         elif not self._paused:
             response.message = "it is not paused: call ~/pause first"

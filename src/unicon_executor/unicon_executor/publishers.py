@@ -56,9 +56,12 @@ class ExecutorPublishers:
         self._humanoid_markers = HumanoidMarkers()
         self._joint_message = JointState(name=list(HUMANOID.joint_names))
 
-    def publish_report(self, report: TickReport, target_age_s: float) -> None:
+    def publish_state(self, report: TickReport, target_age_s: float) -> None:
         """Publish a tick."""
         self._state.publish(to_state_message(report, target_age_s))
+
+    def publish_views(self, report: TickReport) -> None:
+        """Publish the same tick in standard messages; there is no hurry."""
         self._publish_joint_states(report)
         self._publish_odometry(report)
         due = self._marker_period and report.tick % self._marker_period == 0
