@@ -26,6 +26,8 @@ def setup(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
     monkeypatch.setattr(module, "STAMPS", tmp_path / ".venv" / ".unicon-stamps")
     monkeypatch.setattr(module, "LOG", tmp_path / "setup.log")
+    (tmp_path / ".venv" / "bin").mkdir(parents=True)
+    (tmp_path / ".venv" / "bin" / "python").symlink_to(sys.executable)
     for name in ("AMENT_PREFIX_PATH", "ROS_DISTRO"):
         monkeypatch.delenv(name, raising=False)
     return module
@@ -70,8 +72,6 @@ def test_a_full_disk_is_named_with_what_is_needed(setup, monkeypatch):
 
 
 def test_an_unreachable_package_index_is_named(setup):
-    (setup.VENV / "bin").mkdir(parents=True)
-    (setup.VENV / "bin" / "python").symlink_to(sys.executable)
     nowhere = ["--isolated", "--retries", "1", "--index-url", "http://127.0.0.1:9/simple"]
     with pytest.raises(setup.SetupError, match="the package index cannot be reached"):
         setup.pip(["install", "--target", str(setup.ROOT / "out"), *nowhere, "six"], "installing")
@@ -98,8 +98,12 @@ def test_groups_keep_their_order_and_default_to_those_of_the_demo(setup):
     assert setup.choose_groups(["dev", "base"]) == ["base", "dev"]
 
 
-def test_another_distribution_of_ros_is_refused(setup, monkeypatch):
-    monkeypatch.setenv("AMENT_PREFIX_PATH", "/opt/ros/humble")
+def test_another_distribution_of_ros_is_refused(setup, monkeypatch, tmp_path_factory):
+    humble = tmp_path_factory.mktemp("humble")
+    index = humble / "share" / "ament_index" / "resource_index" / "packages"
+    index.mkdir(parents=True)
+    (index / "rclpy").touch()
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(humble))
     monkeypatch.setenv("ROS_DISTRO", "humble")
     with pytest.raises(setup.SetupError, match="humble is sourced, but Jazzy is needed"):
         setup.has_sourced_ros()

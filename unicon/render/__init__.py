@@ -1,0 +1,1 @@
+"""Pictures and videos of clips and recordings, off-screen."""

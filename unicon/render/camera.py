@@ -1,0 +1,35 @@
+"""A camera that follows without a jerk: it looks at a point that is smoothed over time, ahead and back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from unicon.motion.clip import RATE_HZ
+from unicon.render.take import Take
+
+LOOK_HEIGHT_M = 0.85
+
+
+@dataclass(frozen=True)
+class CameraConfig:
+    """Where the camera stands."""
+
+    azimuth_deg: float = 130.0
+    """Direction in which it looks, about the vertical: 0 along x, 90 along y."""
+    elevation_deg: float = -12.0
+    """Negative: from above."""
+    distance_m: float = 4.2
+    smoothing_s: float = 0.6
+    """How long (one sigma) its path is smoothed."""
+
+
+def look_at(take: Take, config: CameraConfig) -> np.ndarray:
+    """Return the points ``(T, 3)`` [m] that the camera looks at: between avatar and target, smoothed."""
+    centre = take.avatar.root_pos_w.copy()
+    if take.target is not None:
+        centre = 0.5 * (centre + take.target.root_pos_w)
+    centre[:, 2] = LOOK_HEIGHT_M
+    return gaussian_filter1d(centre, config.smoothing_s * RATE_HZ, axis=0, mode="nearest")
