@@ -24,6 +24,7 @@ setup(
         "console_scripts": [
             "avatar = unicon_bringup.avatar:main",
             "demo = unicon_bringup.demo:main",
+            "health = unicon_bringup.health:main",
         ]
     },
 )

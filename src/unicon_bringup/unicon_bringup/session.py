@@ -106,6 +106,16 @@ class GraphSession:
         """Wait for the executor's first status."""
         self.spin_until(lambda: self.status is not None, READY_TIMEOUT_S, "status of the executor")
 
+    def wait_for_topics(self, names: tuple[str, ...]) -> None:
+        """Wait until the recorder takes in topics of the avatar."""
+
+        def are_taken() -> bool:
+            full = [f"/{self.config.avatar}/{name}" for name in names]
+            found = [self.node.get_subscriptions_info_by_topic(name) for name in full]
+            return all(any(s.node_name == "recorder" for s in infos) for infos in found)
+
+        self.spin_until(are_taken, READY_TIMEOUT_S, "recorder on the topics " + ", ".join(names))
+
     def call(self, service_type: type, name: str, request: Any) -> Any:
         """Call a service of the graph and return its response.
 
