@@ -1,7 +1,7 @@
 # source setup.bash: a bash or zsh with the project's Python, its ROS packages and its commands in it.
 # Works from any folder. A ROS 2 that is sourced already is used, and its ros2 command is never shadowed.
 
-_unicon_source="${BASH_SOURCE[0]:-${(%):-%x}}" 2>/dev/null || _unicon_source="$0"
+if [ -n "${BASH_VERSION:-}" ]; then _unicon_source="${BASH_SOURCE[0]}"; else eval '_unicon_source="${(%):-%x}"'; fi
 _unicon_root="$(cd "$(dirname "$_unicon_source")" && pwd)"
 case $- in *u*) _unicon_nounset=1; set +u ;; *) _unicon_nounset= ;; esac
 
@@ -14,8 +14,8 @@ else
   fi
   if [ -f "$_unicon_root/ros_ws/install/setup.bash" ] && [ -n "${BASH_VERSION:-}" ]; then
     . "$_unicon_root/ros_ws/install/setup.bash" 2>/dev/null
-  elif [ -f "$_unicon_root/ros_ws/install/setup.zsh" ] && [ -n "${ZSH_VERSION:-}" ]; then
-    . "$_unicon_root/ros_ws/install/setup.zsh" 2>/dev/null
+  elif [ -f "$_unicon_root/ros_ws/install/setup.sh" ] && [ -n "${ZSH_VERSION:-}" ]; then
+    emulate sh -c '. "$_unicon_root/ros_ws/install/setup.sh"' 2>/dev/null
   fi
   export ROS_DISTRO="${ROS_DISTRO:-jazzy}"
   export ROS_AUTOMATIC_DISCOVERY_RANGE="${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}"

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import tyro
 from rich.console import Console
+
 from unicon.recording.session_report import Spread, report_on, spread, to_table
 from unicon_bringup.graph import GraphConfig
 from unicon_bringup.session import GraphSession
@@ -59,7 +60,8 @@ def measure(config: BenchConfig, folder: Path) -> dict[str, object]:
     """Run the graph and return the figures."""
     bag = folder / "session"
     graph = GraphConfig(avatar="bench", record=True, output=str(bag))
-    code = f"import json; from graph import sleep_lateness_s; print(json.dumps(sleep_lateness_s({config.seconds})))"
+    code = "import json, sys; from graph import sleep_lateness_s as late; "
+    code += "print(json.dumps(late(float(sys.argv[1]))))"
     with GraphSession(graph, folder / "graph.log") as session:
         session.wait_until_ready()
         session.wait_for_topics(("state", "target_frames", "events"))
@@ -67,7 +69,10 @@ def measure(config: BenchConfig, folder: Path) -> dict[str, object]:
         for motion in MOTIONS * 3:
             session.queue(motion, 0.5)
         sleeper = subprocess.Popen(
-            [sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parent
+            [sys.executable, "-c", code, str(config.seconds)],
+            stdout=subprocess.PIPE,
+            text=True,
+            cwd=Path(__file__).parent,
         )
         session.spin_for(config.seconds)
         rss_mb = resident_mb("executor_node")

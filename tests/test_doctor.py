@@ -108,9 +108,7 @@ def test_lateness_is_measured_and_ordered():
     assert 0.0 <= late.p50 <= late.p99 <= late.max
 
 
-@pytest.mark.parametrize(
-    ("steps_per_s", "status"), [(24_000, "ok"), (480, "warning"), (120, "failure")]
-)
+@pytest.mark.parametrize(("steps_per_s", "status"), [(24_000, "ok"), (480, "warning"), (120, "failure")])
 def test_physics_is_judged_against_240_steps_a_second(monkeypatch, steps_per_s, status):
     monkeypatch.setattr(probes, "physics_steps_per_s", lambda ticks: steps_per_s)
     assert doctor.examine_physics(CONFIG).status == status

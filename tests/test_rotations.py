@@ -109,9 +109,7 @@ def test_slerp_meets_both_ends_and_turns_at_constant_speed(a, b, t):
     assert same_rotation(start, a)
     assert same_rotation(end, b)
     whole = rotations.angle(rotations.multiply(rotations.conjugate(a), b))
-    part = rotations.angle(
-        rotations.multiply(rotations.conjugate(a), rotations.slerp(a, b, np.array(t)))
-    )
+    part = rotations.angle(rotations.multiply(rotations.conjugate(a), rotations.slerp(a, b, np.array(t))))
     assert np.isclose(part, t * whole, atol=1e-6)
 
 
@@ -121,7 +119,15 @@ def test_the_orders_of_ros_and_mujoco_are_each_others_inverse():
     assert rotations.xyzw_to_wxyz(rotations.wxyz_to_xyzw(q)).tolist() == q.tolist()
 
 
-UNARY = ["to_matrix", "to_rot6d", "to_rotation_vector", "angle", "heading", "conjugate", "normalize"]
+UNARY = [
+    "to_matrix",
+    "to_rot6d",
+    "to_rotation_vector",
+    "angle",
+    "heading",
+    "conjugate",
+    "normalize",
+]
 
 
 @pytest.mark.parametrize("name", UNARY)

@@ -157,9 +157,7 @@ def test_the_build_depends_on_what_messages_say(setup, tmp_path):
     assert setup.hash_tree(tmp_path, setup.BUILD_INPUTS) != before
 
 
-def test_where_opengl_is_missing_and_nothing_may_be_installed_one_line_says_what_to_type(
-    setup, monkeypatch
-):
+def test_where_opengl_is_missing_and_nothing_may_be_installed_one_line_says_what_to_type(setup, monkeypatch):
     monkeypatch.setattr(setup, "loads", lambda library: False)
     monkeypatch.setattr(setup.shutil, "which", lambda name: None)
     assert "sudo apt install libegl1" in setup.provide_gl()
@@ -187,9 +185,7 @@ def executable(path: Path) -> Path:
 def bash(command: str, **variables: str) -> str:
     """Return what a bash with a bare environment prints."""
     environment = {"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", "/"), **variables}
-    result = subprocess.run(
-        ["bash", "-c", command], env=environment, capture_output=True, text=True
-    )
+    result = subprocess.run(["bash", "-c", command], env=environment, capture_output=True, text=True)
     return result.stdout + result.stderr
 
 
@@ -223,3 +219,51 @@ def test_setup_bash_works_under_nounset_from_another_folder_and_leaves_it_set(tm
 def test_setup_bash_says_that_setup_has_not_run(tmp_path):
     shutil.copy(ROOT / "setup.bash", tmp_path)
     assert "make setup" in bash(f"source {tmp_path}/setup.bash")
+
+
+def test_set_up_inside_an_activated_environment_uses_the_python_behind_it(setup):
+    assert Path(setup.PYTHON).is_file()
+    assert not Path(setup.PYTHON).is_relative_to(ROOT / ".venv")
+
+
+def test_a_wrong_python_hands_over_to_one_that_will_do(setup, monkeypatch, tmp_path):
+    (tmp_path / "python3.12").symlink_to(sys.executable)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    started: list[list[str]] = []
+    monkeypatch.setattr(setup.os, "execv", lambda path, words: started.append(words))
+    setup.change_python(["base"])
+    assert started[0][0].endswith("python3.12") and started[0][-1] == "base"
+
+
+def test_the_wheels_of_another_checkout_are_not_taken_for_a_sourced_ros(setup, monkeypatch, tmp_path_factory):
+    other = tmp_path_factory.mktemp("other")
+    index = other / "share" / "ament_index" / "resource_index" / "packages"
+    index.mkdir(parents=True)
+    (index / "rclpy").touch()
+    (other / "pyvenv.cfg").touch()
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(other))
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    assert not setup.has_sourced_ros()
+
+
+def test_a_group_that_was_interrupted_is_installed_afresh(setup, monkeypatch):
+    calls: list[list[str]] = []
+
+    def interrupt(arguments: list[str], what: str) -> None:
+        calls.append(arguments)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+
+    setup.STAMPS.mkdir(parents=True)
+    monkeypatch.setattr(setup, "pip", interrupt)
+    group = setup.ROOT / "requirements" / "base.txt"
+    with pytest.raises(KeyboardInterrupt):
+        setup.install_requirements(group, group)
+    for _ in range(2):
+        setup.install_requirements(group, group)
+    assert ["--force-reinstall" in arguments for arguments in calls] == [False, True, False]
+
+
+def test_a_program_that_cannot_be_started_is_named(setup):
+    with pytest.raises(setup.SetupError, match="cannot run /no/such/program"):
+        setup.run(["/no/such/program"], "trying")

@@ -2,9 +2,9 @@
 
 usage: python3 tools/setup.py [group ...]        groups: base ros train dev (default: base ros)
 
-Each step is stamped with a hash of what it depends on and is left out while that stays the same, so a
-second call takes a second. An interrupted step has no stamp and is done again. Standard library only,
-in a syntax that old Pythons read too, to be able to say that they are too old.
+Each step is stamped with a hash of what it depends on and is left out while that stays the same, so
+a second call takes a second. An interrupted step has no stamp and is done again. Standard library
+only, in a syntax that old Pythons read too, to be able to say that they are too old.
 """
 
 import ctypes
@@ -25,11 +25,16 @@ STAMPS = VENV / ".unicon-stamps"
 WORKSPACE = ROOT / "ros_ws"
 LOG = VENV / "setup.log"
 GROUPS = ("base", "ros", "train", "dev")
-PYTHONS = ((3, 11), (3, 12), (3, 13))
+PYTHONS = ((3, 12), (3, 11), (3, 13))
+# The real program: inside an activated .venv, sys.executable is a link that a new .venv takes away.
+PYTHON = os.path.realpath(getattr(sys, "_base_executable", None) or sys.executable)
 FIRST_SPACE_BYTES = 3 * 10**9
 APT_LINE = "sudo apt install g++ python3-dev python3-venv"
 GL_PACKAGES = ("libegl1", "libgl1-mesa-dri")
-BUILD_INPUTS = ("package.xml", "CMakeLists.txt", "*.msg", "*.srv", "setup.py", "setup.cfg", "*.launch.py", "*.yaml")
+BUILD_INPUTS = (
+    *("package.xml", "CMakeLists.txt", "*.msg", "*.srv"),
+    *("setup.py", "setup.cfg", "*.launch.py", "*.yaml"),
+)
 
 
 class SetupError(Exception):
@@ -40,6 +45,8 @@ def main(words):
     """Do all steps; return the exit status."""
     try:
         groups = choose_groups(words)
+        if sys.version_info[:2] not in PYTHONS:
+            change_python(words)
         check_machine()
         with_ros = has_sourced_ros()
         steps = plan(groups, with_ros)
@@ -65,12 +72,20 @@ def choose_groups(words):
     return [group for group in GROUPS if group in (words or ("base", "ros"))]
 
 
+def change_python(words):
+    """Start again under a Python that will do; return where there is none."""
+    for version in PYTHONS:
+        python = shutil.which("python%d.%d" % version)
+        if python and subprocess.call([python, "-c", ""], stderr=subprocess.DEVNULL) == 0:
+            os.execv(python, [python, os.path.abspath(__file__)] + words)
+
+
 def check_machine():
     """Refuse a machine on which set-up cannot end well."""
     if sys.version_info[:2] not in PYTHONS:
         raise SetupError(
             "this is Python %d.%d, but 3.11, 3.12 or 3.13 is needed: install one and run "
-            "`make PYTHON=python3.11 ...`" % sys.version_info[:2]
+            "`make PYTHON=python3.12 ...`" % sys.version_info[:2]
         )
     if not (shutil.which("c++") or shutil.which("g++")):
         raise SetupError("there is no C++ compiler, which the messages need: run `%s`" % APT_LINE)
@@ -81,29 +96,42 @@ def check_machine():
     free = shutil.disk_usage(str(ROOT)).free
     if not VENV.exists() and free < FIRST_SPACE_BYTES:
         raise SetupError(
-            "%.1f GB of disk are free at %s, but set-up needs 3 GB: make room and run it again" % (free / 1e9, ROOT)
+            "%.1f GB of disk are free at %s, but set-up needs 3 GB: make room and run it again"
+            % (free / 1e9, ROOT)
         )
 
 
 def has_sourced_ros():
     """Return whether a ROS 2 Jazzy is sourced in this shell, other than the project's own."""
     distro = os.environ.get("ROS_DISTRO")
-    prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if p]
-    foreign = [p for p in prefixes if not Path(p).resolve().is_relative_to(ROOT)]
-    if not distro or not foreign:
+    prefixes = [Path(p) for p in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if p]
+    if not distro or not any(holds_ros(prefix) for prefix in prefixes):
         return False
     if distro != "jazzy":
         raise SetupError(
-            "ROS 2 %s is sourced, but Jazzy is needed: source a Jazzy, or none and its wheels are installed" % distro
+            "ROS 2 %s is sourced, but Jazzy is needed: source that, or none to get wheels" % distro
+        )
+    if importlib.util.find_spec("rclpy") is None:
+        raise SetupError(
+            "ROS 2 Jazzy is sourced, but %s cannot import its rclpy: run "
+            "`make PYTHON=/usr/bin/python3 ...`" % PYTHON
         )
     return True
 
 
+def holds_ros(prefix):
+    """Return whether a prefix is an installed ROS; a .venv with the wheels is not."""
+    index = prefix / "share" / "ament_index" / "resource_index" / "packages"
+    return (index / "rclpy").exists() and not (prefix / "pyvenv.cfg").exists()
+
+
 def plan(groups, with_ros):
     """Return the steps: label, name of the stamp, what it depends on, and the work."""
-    files = [ROOT / "requirements" / (group + ".txt") for group in groups if not (with_ros and group == "ros")]
+    files = [
+        ROOT / "requirements" / (group + ".txt") for group in groups if not (with_ros and group == "ros")
+    ]
     constraints = ROOT / "requirements" / "constraints.txt"
-    python = [sys.version, sys.executable, str(VENV), str(with_ros)]
+    python = [sys.version, PYTHON, str(VENV), str(with_ros)]
     steps = [("making .venv", "venv", python, lambda: make_venv(with_ros))]
     for path in files:
         inputs = python + [path.read_text(), constraints.read_text()]
@@ -122,7 +150,7 @@ def run_step(label, stamp_name, inputs, work):
     """Do a step unless its stamp says that it is done; show how long it takes."""
     wanted = hashlib.sha256("\0".join(inputs).encode()).hexdigest()
     stamp = STAMPS / stamp_name
-    if stamp.exists() and stamp.read_text() == wanted:
+    if stamp.exists() and stamp.read_text() == wanted and (VENV / "bin" / "python").exists():
         return
     with Progress(label):
         note = work()
@@ -164,13 +192,18 @@ def make_venv(with_ros):
     if VENV.exists():
         shutil.rmtree(str(VENV))
     arguments = ["--system-site-packages"] if with_ros else []
-    run([sys.executable, "-m", "venv"] + arguments + [str(VENV)], "making .venv", log=False)
+    run([PYTHON, "-m", "venv"] + arguments + [str(VENV)], "making .venv", log=False)
     run([str(VENV / "bin" / "python"), "-m", "pip", "--version"], "starting pip")
 
 
 def install_requirements(path, constraints):
     """Install one file of requirements."""
-    pip(["install", "-r", str(path), "-c", str(constraints)], "installing %s" % path.relative_to(ROOT))
+    begun = STAMPS / (path.stem + ".begun")
+    again = ["--force-reinstall"] if begun.exists() else []  # a package may have been cut in half
+    begun.touch()
+    arguments = ["install", "-r", str(path), "-c", str(constraints)] + again
+    pip(arguments, "installing %s" % path.relative_to(ROOT))
+    begun.unlink()
 
 
 def install_library():
@@ -205,10 +238,19 @@ def build_workspace():
         environment.update(AMENT_PREFIX_PATH=str(VENV), CMAKE_PREFIX_PATH=str(VENV))
     environment["PATH"] = "%s:%s" % (VENV / "bin", environment["PATH"])
     environment["VIRTUAL_ENV"] = str(VENV)
-    cmake = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF"]
+    ninja = shutil.which("ninja", path=environment["PATH"])
+    cmake = ["-G", "Ninja" if ninja else "Unix Makefiles"]
+    cmake += ["-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF"]
     cmake += ["-DPython3_EXECUTABLE=%s" % (VENV / "bin" / "python")]
     cmake += ["-DCMAKE_PROJECT_INCLUDE=%s" % (ROOT / "tools" / "ros_wheels_fixups.cmake")]
-    colcon = [str(VENV / "bin" / "python"), "-m", "colcon", "build", "--symlink-install", "--cmake-args"]
+    colcon = [
+        str(VENV / "bin" / "python"),
+        "-m",
+        "colcon",
+        "build",
+        "--symlink-install",
+        "--cmake-args",
+    ]
     run(colcon + cmake, "building the ROS workspace", cwd=WORKSPACE, env=environment)
 
 
@@ -245,9 +287,11 @@ def run(command, what, log=True, **options):
     Raises:
         SetupError: when it fails; the message says why, as far as its output tells.
     """
-    result = subprocess.run(
-        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, **options
-    )
+    options.update(stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+    try:
+        result = subprocess.run(command, text=True, **options)
+    except OSError as error:
+        raise SetupError("%s failed: cannot run %s (%s)" % (what, command[0], error.strerror)) from error
     if log:
         with open(str(LOG), "a") as file:
             file.write("$ %s\n%s\n" % (" ".join(command), result.stdout))
@@ -255,7 +299,17 @@ def run(command, what, log=True, **options):
         raise SetupError(explain(what, result.stdout, log))
 
 
-NETWORK_SIGNS = ("NewConnectionError", "Temporary failure in name", "Network is unreachable", "ConnectTimeout", "ProxyError")
+NETWORK_SIGNS = (
+    "NewConnectionError",
+    "Failed to establish a new connection",
+    "Failed to resolve",
+    "Temporary failure in name",
+    "Network is unreachable",
+    "ConnectTimeout",
+    "ReadTimeout",
+    "ProxyError",
+    "SSLError",
+)
 DISK_SIGNS = ("No space left on device",)
 
 
@@ -264,7 +318,10 @@ def explain(what, output, log):
     if any(sign in output for sign in DISK_SIGNS):
         return "%s failed for lack of disk space: make room and run it again" % what
     if any(sign in output for sign in NETWORK_SIGNS):
-        return "%s failed since the package index cannot be reached: look at the network and run it again" % what
+        advice = "check the network and run it again"
+        return "%s failed since the package index cannot be reached: %s" % (what, advice)
+    if "No module named colcon" in output:
+        return "%s needs colcon: run `sudo apt install python3-colcon-common-extensions`" % what
     last = [line for line in output.splitlines() if line.strip()][-1:] or ["no output"]
     where = "; all of it is in %s" % LOG if log else ""
     return "%s failed (%s)%s" % (what, last[0].strip(), where)

@@ -41,9 +41,7 @@ OBSERVATION_SIZE = sum(size for _, size in OBSERVATION_LAYOUT)
 RELATION_SIZE = sum(size for _, size in RELATION_LAYOUT)
 MAX_TAU = 8
 
-OBSERVATION_ID = hashlib.sha256(
-    json.dumps([OBSERVATION_LAYOUT, RELATION_LAYOUT]).encode()
-).hexdigest()[:16]
+OBSERVATION_ID = hashlib.sha256(json.dumps([OBSERVATION_LAYOUT, RELATION_LAYOUT]).encode()).hexdigest()[:16]
 """Names this layout in policy files; a policy made for another one is refused."""
 
 

@@ -95,7 +95,10 @@ def save_policy(folder: Path, card: PolicyCard, weights: PolicyWeights) -> None:
     for index, (weight, bias) in enumerate(weights.layers):
         tensors[f"layers.{index}.weight"], tensors[f"layers.{index}.bias"] = weight, bias
     folder.mkdir(parents=True, exist_ok=True)
-    save_file({k: np.ascontiguousarray(v, dtype=np.float32) for k, v in tensors.items()}, folder / WEIGHTS_FILE)
+    save_file(
+        {k: np.ascontiguousarray(v, dtype=np.float32) for k, v in tensors.items()},
+        folder / WEIGHTS_FILE,
+    )
     (folder / CARD_FILE).write_text(json.dumps(dataclasses.asdict(card), indent=2) + "\n")
 
 
@@ -137,7 +140,11 @@ def _read_card(path: Path) -> PolicyCard:
 
 
 _JSON_TYPES: dict[str, type] = {"int": int, "str": str, "tuple[float, ...]": list}
-_CHOICES = {"action": ("torque", "torque-servo"), "activation": tuple(ACTIVATIONS), "format": (FORMAT,)}
+_CHOICES = {
+    "action": ("torque", "torque-servo"),
+    "activation": tuple(ACTIVATIONS),
+    "format": (FORMAT,),
+}
 
 
 def _check_field(path: Path, field: dataclasses.Field[Any], values: dict[str, Any]) -> None:

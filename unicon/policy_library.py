@@ -21,7 +21,10 @@ def policies_folder() -> Path:
 
 def policy_names() -> list[str]:
     """Return the names of all policies, the reference servo first."""
-    return [REFERENCE_SERVO, *sorted(card.parent.name for card in policies_folder().glob(f"*/{CARD_FILE}"))]
+    return [
+        REFERENCE_SERVO,
+        *sorted(card.parent.name for card in policies_folder().glob(f"*/{CARD_FILE}")),
+    ]
 
 
 def load_policy(name: str) -> Policy:

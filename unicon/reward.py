@@ -30,6 +30,7 @@ from unicon.state import CharacterState, stack
 
 Array = Any
 
+
 class RewardTerms(NamedTuple):
     """The five terms, each ``(...)`` within 0..1, 1 where the target is met exactly."""
 
@@ -81,7 +82,8 @@ def tracking_errors(actual: CharacterState, target: CharacterState) -> TrackingE
 
 
 def reward_terms(
-    errors: TrackingErrors, config: RewardConfig = RewardConfig()  # noqa: B008 - frozen, so shared safely
+    errors: TrackingErrors,
+    config: RewardConfig = RewardConfig(),  # noqa: B008 - frozen, so shared safely
 ) -> RewardTerms:
     """Return exp(-k_i e_i) of each error."""
     xp = array_namespace(errors.root_position)
@@ -89,7 +91,8 @@ def reward_terms(
 
 
 def total_reward(
-    terms: RewardTerms, config: RewardConfig = RewardConfig()  # noqa: B008 - frozen, so shared safely
+    terms: RewardTerms,
+    config: RewardConfig = RewardConfig(),  # noqa: B008 - frozen, so shared safely
 ) -> Array:
     """Return the weighted sum ``(...)`` of the terms, within 0..1."""
     total = config.weights[0] * terms[0]
@@ -99,7 +102,8 @@ def total_reward(
 
 
 def breaks_constraint(
-    terms: RewardTerms, config: RewardConfig = RewardConfig()  # noqa: B008 - frozen, so shared safely
+    terms: RewardTerms,
+    config: RewardConfig = RewardConfig(),  # noqa: B008 - frozen, so shared safely
 ) -> Array:
     """Return ``(...)`` whether any term is below the threshold (not a number counts as below)."""
     xp = array_namespace(terms.root_position)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from unicon.control import Control, ServoControl, TorqueControl
+from unicon.control import Control, ServoControl
 from unicon.humanoid import HUMANOID
 from unicon.humanoid.mjcf import MOTOR_GROUP, SERVO_GROUP, compile_model
 from unicon.projectile import Projectile, aim
@@ -59,8 +59,6 @@ class Snapshot:
     """Age of each ball [s], None where it is parked."""
     balls: tuple[tuple[float, float], ...]
     """Mass [kg] and radius [m] of each ball."""
-
-
 
 
 class Simulation:
@@ -133,9 +131,7 @@ class Simulation:
     def snapshot(self) -> Snapshot:
         """Return everything that determines what follows."""
         balls = self._balls() if self._flies_balls() else ()
-        return Snapshot(
-            self._data.qpos.copy(), self._data.qvel.copy(), tuple(self._ball_ages), tuple(balls)
-        )
+        return Snapshot(self._data.qpos.copy(), self._data.qvel.copy(), tuple(self._ball_ages), tuple(balls))
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot."""
@@ -229,12 +225,20 @@ class Simulation:
         model.geom_size[geom], model.geom_rbound[geom] = (radius_m, 0.0, 0.0), radius_m
         model.body_mass[body] = mass_kg
         model.body_inertia[body] = 0.4 * mass_kg * radius_m**2
-        model.geom_contype[geom] = model.geom_conaffinity[geom] = 1
+        # MuJoCo keeps the inertia of bodies that only translate and turn freely in constants of the model
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        self._let_touch(index, 1)
+
+    def _let_touch(self, index: int, mask: int) -> None:
+        """Set what a ball collides with; the broad phase looks at the body's masks."""
+        model, geom = self._model, self._ball_geom(index)
+        body = model.geom_bodyid[geom]
+        model.geom_contype[geom] = model.geom_conaffinity[geom] = mask
+        model.body_contype[body] = model.body_conaffinity[body] = mask
 
     def _park_ball(self, index: int) -> None:
         """Take a ball out of the world: out of reach, at rest, touching nothing, without weight."""
-        model, geom = self._model, self._ball_geom(index)
-        model.geom_contype[geom] = model.geom_conaffinity[geom] = 0
+        self._let_touch(index, 0)
         qpos, qvel = QPOS_SIZE + 7 * index, QVEL_SIZE + 6 * index
         self._data.qpos[qpos : qpos + 7] = self._model.qpos0[qpos : qpos + 7]
         self._data.qvel[qvel : qvel + 6] = 0.0

@@ -1,4 +1,7 @@
-"""The target frames of one source by time: between two it interpolates, past the last it extrapolates, then holds."""
+"""The target frames of one source by time.
+
+Between two frames it interpolates, past the last it extrapolates, then it holds.
+"""
 
 from __future__ import annotations
 

@@ -117,9 +117,7 @@ class TargetSources:
         known.buffer.add(targets)
         known.sequence, known.heard_ns = targets.sequence, now_ns
 
-    def sample(
-        self, times_ns: np.ndarray, now_ns: int, avatar: CharacterState
-    ) -> CharacterState | None:
+    def sample(self, times_ns: np.ndarray, now_ns: int, avatar: CharacterState) -> CharacterState | None:
         """Return the targets at ``times_ns (K,)`` as anchored and blended, None where no source came yet."""
         self._choose(times_ns, now_ns, avatar)
         if self._followed is None:

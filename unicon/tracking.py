@@ -22,7 +22,13 @@ from unicon.errors import UniconError
 from unicon.humanoid import HUMANOID
 from unicon.policy import Policy, PolicyContext
 from unicon.policy_library import load_policy
-from unicon.reward import RewardConfig, RewardTerms, breaks_constraint, reward_terms, tracking_errors
+from unicon.reward import (
+    RewardConfig,
+    RewardTerms,
+    breaks_constraint,
+    reward_terms,
+    tracking_errors,
+)
 from unicon.simulation import CONTROL_HZ, Simulation, StepResult
 from unicon.state import CharacterState, hold
 from unicon.target_frames import (
@@ -255,7 +261,9 @@ class Tracker:
                 return "stands in the present target"
             case SelectSource(source=source):
                 if len(source) > self._limits.max_source_length:
-                    raise UniconError(f"a source's name has at most {self._limits.max_source_length} characters")
+                    raise UniconError(
+                        f"a source's name has at most {self._limits.max_source_length} characters"
+                    )
                 self.sources.selected = source
                 return f"follows {source!r}" if source else "follows whichever source began last"
             case LoadPolicy(policy=name):
@@ -263,7 +271,8 @@ class Tracker:
                 return f"runs {self.policy.name}"
             case ThrowProjectile(projectile=projectile):
                 self.simulation.throw(projectile)
-                return f"threw {projectile.mass_kg:g} kg at {projectile.speed_m_s:g} m/s at the {projectile.body}"
+                thrown = f"{projectile.mass_kg:g} kg at {projectile.speed_m_s:g} m/s"
+                return f"threw {thrown} at the {projectile.body}"
 
     def _report(
         self,

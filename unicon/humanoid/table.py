@@ -1,4 +1,4 @@
-"""The one table of the humanoid: 20 bodies, 35 hinges, 1.8 m, 70 kg. Model, kinematics and URDF follow from it.
+"""The one table of the humanoid: 20 bodies, 35 hinges, 1.8 m, 70 kg. All else follows from it.
 
 The zero pose stands with hanging arms and faces +x; z is up and y is to the left. All frames are parallel
 in the zero pose, and every hinge goes through its body's origin. Left and right use the same axes, so

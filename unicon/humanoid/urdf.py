@@ -1,6 +1,6 @@
 """The humanoid as URDF, for RViz, robot_state_publisher and other robot tools.
 
-URDF has one hinge a joint, so a body with several hinges gets massless links between them. Ellipsoids
+URDF has one hinge a joint, so a body with several hinges gets links of next to no mass between them. Ellipsoids
 become spheres of their mean radius and capsules a cylinder with two spheres.
 """
 
@@ -35,10 +35,17 @@ def _add_joints(robot: Element, body: BodySpec) -> None:
         last = index == len(body.hinges) - 1
         child = body.name if last else f"{body.name}_{index}"
         if not last:
-            SubElement(robot, "link", name=child)
+            _add_tiny_inertia(SubElement(robot, "link", name=child))
         offset = body.offset if index == 0 else (0.0, 0.0, 0.0)
         _add_joint(robot, hinge, str(parent), child, offset)
         parent = child
+
+
+def _add_tiny_inertia(link: Element) -> None:
+    """Give a link between two hinges of one body next to no mass: many readers refuse none at all."""
+    inertial = SubElement(link, "inertial")
+    SubElement(inertial, "mass", value="1e-06")
+    SubElement(inertial, "inertia", ixx="1e-09", ixy="0", ixz="0", iyy="1e-09", iyz="0", izz="1e-09")
 
 
 def _add_joint(robot: Element, hinge: HingeSpec, parent: str, child: str, offset: tuple[float, ...]) -> None:
@@ -76,7 +83,14 @@ def _add_inertia(link: Element, model: mujoco.MjModel, body_id: int) -> None:
     element = SubElement(link, "inertial")
     SubElement(element, "origin", xyz=_text(model.body_ipos[body_id]), rpy="0 0 0")
     SubElement(element, "mass", value=f"{model.body_mass[body_id]:.6g}")
-    names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+    names = {
+        "ixx": (0, 0),
+        "ixy": (0, 1),
+        "ixz": (0, 2),
+        "iyy": (1, 1),
+        "iyz": (1, 2),
+        "izz": (2, 2),
+    }
     SubElement(element, "inertia", {name: f"{inertia[at]:.6g}" for name, at in names.items()})
 
 

@@ -1,4 +1,4 @@
-"""Reads BVH, the animators' format: a tree of joints with offsets and channels, then a line of numbers a frame.
+"""Reads BVH, the animators' format: a tree of joints with offsets and channels, then rows of numbers.
 
 Any skeleton and any order of channels. BVH has y up and no unit of length; the mapping of a skeleton family
 says how long a unit is.
@@ -157,7 +157,7 @@ def _read_frames(reader: _Reader, channels: int) -> tuple[float, np.ndarray]:
 def _apply_channels(
     joints: list[_Joint], values: np.ndarray, offsets: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the root's position ``(T, 3)`` in the file's axes and all local rotations ``(T, J, 4)`` in ours."""
+    """Return the root's position ``(T, 3)`` in the file's axes, and local rotations ``(T, J, 4)`` in ours."""
     root_pos = np.tile(offsets[0], (len(values), 1))
     turns = np.zeros((len(values), len(joints), 4))
     turns[..., 0] = 1.0

@@ -91,7 +91,9 @@ def load_clip(path: Path) -> Clip:
         raise InputFileError(f"{path}: is not a clip, since it lacks {sorted(missing)[0]!r}")
     if str(data["humanoid_id"]) != HUMANOID.id:
         made_for = str(data["humanoid_id"])
-        raise InputFileError(f"{path}: was made for humanoid {made_for}, this is {HUMANOID.id}; make it again")
+        raise InputFileError(
+            f"{path}: was made for humanoid {made_for}, this is {HUMANOID.id}; make it again"
+        )
     texts = {name: str(data[name]) for name in _TEXTS}
     poses = [data[name] for name in ("root_pos_w", "root_quat_w", "joint_pos")]
     name = texts.pop("name")

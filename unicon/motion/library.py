@@ -18,7 +18,9 @@ class ClipLibrary:
 
     def __post_init__(self) -> None:
         if not self.folder.is_dir():
-            raise InputFileError(f"{self.folder}: there is no such folder of clips; run `unicon motions fetch`")
+            raise InputFileError(
+                f"{self.folder}: there is no such folder of clips; run `unicon motions fetch`"
+            )
         if not self.names:
             raise InputFileError(f"{self.folder}: holds no clips (*.npz); run `unicon motions fetch`")
 

@@ -174,9 +174,7 @@ def _make_hinge(turns: dict[str, np.ndarray], upper: str, lower: str, sign: floa
     weight = weight * weight * (3.0 - 2.0 * weight)
     straightened = np.where(np.abs(twist) > 0.5 * np.pi, 0.0, weight)
     z_axis = np.array([0.0, 0.0, 1.0])
-    turns[upper] = rotations.multiply(
-        turns[upper], rotations.from_axis_angle(z_axis, straightened * twist)
-    )
+    turns[upper] = rotations.multiply(turns[upper], rotations.from_axis_angle(z_axis, straightened * twist))
 
 
 def _joint_angles(turns: dict[str, np.ndarray]) -> np.ndarray:

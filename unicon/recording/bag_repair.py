@@ -96,4 +96,3 @@ def _topic(channel: Channel, schema: Schema) -> Topic:
         type_hash=channel.metadata.get("topic_type_hash", ""),
         qos_yaml=channel.metadata.get("offered_qos_profiles", "[]"),
     )
-

@@ -96,7 +96,9 @@ class BagWriter:
             folder.mkdir(parents=True)
             self._disk = _Disk(folder / f"{folder.name}_0.mcap", folder / SPARE_FILE)
         except FileExistsError as error:
-            raise InputFileError(f"{folder}: exists already; choose another folder for the recording") from error
+            raise InputFileError(
+                f"{folder}: exists already; choose another folder for the recording"
+            ) from error
         except OSError as error:
             raise InputFileError(f"{folder}: cannot be made ({os.strerror(error.errno or 0)})") from error
         self._writer = Writer(self._disk, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)  # type: ignore[arg-type]

@@ -65,7 +65,9 @@ def replay_recording(recording: Recording, folder: Path) -> Replay:
     for expected, state in enumerate(states, states[0].tick):
         if state.tick != expected:
             lost = state.tick - expected
-            raise InputFileError(f"{folder}: {lost} states are missing before tick {state.tick}; cannot go on")
+            raise InputFileError(
+                f"{folder}: {lost} states are missing before tick {state.tick}; cannot go on"
+            )
         for command in commands.pop(state.tick, []):
             tracker.apply(from_json(command.kind, command.arguments))
         for source, sequence in state.accepted:

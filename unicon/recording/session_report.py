@@ -119,7 +119,10 @@ def to_table(report: SessionReport) -> Table:
         ("tick time", _show(report.tick_ms)),
         ("deadline jitter", _show(report.jitter_ms)),
         ("target age", _show(report.target_age_ms)),
-        ("joint error", f"mean {report.joint_error_mean_mm:.0f} mm, worst {report.joint_error_worst_mm:.0f} mm"),
+        (
+            "joint error",
+            f"mean {report.joint_error_mean_mm:.0f} mm, worst {report.joint_error_worst_mm:.0f} mm",
+        ),
         ("upright", f"{report.upright_seconds:.1f} of {report.seconds:.1f} s"),
         ("falls, resets", f"{report.falls}, {report.resets}"),
         ("lost messages", str(report.lost_messages)),

@@ -11,6 +11,7 @@ from unicon.motion.clip import RATE_HZ
 from unicon.render.take import Take
 
 LOOK_HEIGHT_M = 0.85
+TOGETHER_M = 1.5
 
 
 @dataclass(frozen=True)
@@ -27,9 +28,14 @@ class CameraConfig:
 
 
 def look_at(take: Take, config: CameraConfig) -> np.ndarray:
-    """Return the points ``(T, 3)`` [m] that the camera looks at: between avatar and target, smoothed."""
+    """Return the points ``(T, 3)`` [m] that the camera looks at, smoothed.
+
+    Between avatar and target while they are together; an avatar left lying is left behind.
+    """
     centre = take.avatar.root_pos_w.copy()
     if take.target is not None:
-        centre = 0.5 * (centre + take.target.root_pos_w)
+        apart = take.target.root_pos_w - centre
+        distance = np.linalg.norm(apart, axis=-1, keepdims=True)
+        centre = take.target.root_pos_w - apart * 0.5 / np.maximum(distance / TOGETHER_M, 1.0)
     centre[:, 2] = LOOK_HEIGHT_M
     return gaussian_filter1d(centre, config.smoothing_s * RATE_HZ, axis=0, mode="nearest")

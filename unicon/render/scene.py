@@ -24,7 +24,9 @@ class Picture:
 
 def translucent(appearance: Appearance, opacity: float) -> Appearance:
     """Return the same colours, seen through."""
-    return Appearance(*((*colour[:3], opacity) for colour in (appearance.skin, appearance.cloth, appearance.dark)))
+    return Appearance(
+        *((*colour[:3], opacity) for colour in (appearance.skin, appearance.cloth, appearance.dark))
+    )
 
 
 def build_scene(avatar: Appearance, target: Appearance, picture: Picture) -> str:
@@ -39,12 +41,16 @@ def build_scene(avatar: Appearance, target: Appearance, picture: Picture) -> str
   <rgba haze="0.80 0.84 0.89 1" fog="0.80 0.84 0.89 1"/>
 </visual>
 <asset>
-  <texture name="sky" type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.66 0.73 0.81" width="256" height="256"/>
-  <texture name="grid" type="2d" builtin="checker" rgb1="0.84 0.85 0.87" rgb2="0.79 0.80 0.83" mark="edge" markrgb="0.68 0.70 0.74" width="512" height="512"/>
+  <texture name="sky" type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.66 0.73 0.81"
+    width="256" height="256"/>
+  <texture name="grid" type="2d" builtin="checker" rgb1="0.84 0.85 0.87" rgb2="0.79 0.80 0.83"
+    mark="edge" markrgb="0.68 0.70 0.74"
+    width="512" height="512"/>
   <material name="grid" texture="grid" texrepeat="1 1" texuniform="true"/>
 </asset>
 <worldbody>
-  <light name="key" pos="1.5 -2 4.5" dir="-0.3 0.4 -1" mode="fixed" directional="true" diffuse="0.55 0.54 0.52" specular="0.12 0.12 0.12" castshadow="true"/>
+  <light name="key" pos="1.5 -2 4.5" dir="-0.3 0.4 -1" mode="fixed" directional="true"
+    diffuse="0.55 0.54 0.52" specular="0.12 0.12 0.12" castshadow="true"/>
   <geom name="floor" type="plane" size="0 0 0.5" material="grid"/>
   {build_body(avatar, "avatar_")}
   {build_body(target, "target_")}

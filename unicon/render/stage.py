@@ -67,9 +67,7 @@ class Stage:
         self._camera.lookat[:] = self._points[frame]
         everything = mujoco.mjtCatBit.mjCAT_ALL
         option = mujoco.MjvOption()
-        mujoco.mjv_updateScene(
-            self._model, self._data, option, None, self._camera, everything, self._scene
-        )
+        mujoco.mjv_updateScene(self._model, self._data, option, None, self._camera, everything, self._scene)
         picture = np.empty((self._area.height, self._area.width, 3), np.uint8)
         mujoco.mjr_render(self._area, self._scene, self._context)
         mujoco.mjr_readPixels(picture, None, self._area, self._context)

@@ -4,6 +4,7 @@ from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+
 from unicon_bringup.graph import (
     GraphConfig,
     choose_nodes,
@@ -37,7 +38,7 @@ def start_nodes(context: LaunchContext) -> list[Node]:
             package=entry.package,
             executable=entry.executable,
             namespace=config.avatar,
-            parameters=[parameters_of(entry, config)],
+            parameters=[parameters_of(entry, config) or {"use_sim_time": False}],
             output="screen",
         )
         for entry in choose_nodes(read_list(default_list()), config)

@@ -12,8 +12,8 @@ import sys
 
 import tyro
 from honcho.manager import Manager
-from unicon.errors import UniconError
 
+from unicon.errors import UniconError
 from unicon_bringup.graph import (
     GraphConfig,
     NodeEntry,

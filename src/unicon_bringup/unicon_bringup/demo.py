@@ -15,6 +15,7 @@ from pathlib import Path
 import tyro
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
 from unicon.errors import UniconError
 from unicon.motion.fetch import LICENCE, SOURCE, fetch
 from unicon.recording.session_report import report_on, to_table
@@ -22,7 +23,6 @@ from unicon.render.gl import NoGLError
 from unicon.render.scene import Picture
 from unicon.render.show import RenderConfig, render
 from unicon.render.take import take_from_bag
-
 from unicon_bringup.graph import GraphConfig
 from unicon_bringup.session import GraphSession
 

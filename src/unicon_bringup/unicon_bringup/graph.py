@@ -14,6 +14,7 @@ from ament_index_python.packages import (
     get_package_prefix,
     get_package_share_directory,
 )
+
 from unicon.errors import InputFileError, UniconError, UnknownNameError
 
 ROLES = ("executor", "scheduler", "recorder")
@@ -113,7 +114,10 @@ def ros_arguments(entry: NodeEntry, config: GraphConfig) -> list[str]:
     """Return the arguments that follow the executable: namespace and parameters."""
     arguments = ["--ros-args", "-r", f"__ns:=/{config.avatar}"]
     for name, value in parameters_of(entry, config).items():
-        arguments += ["-p", f"{name}:={yaml.safe_dump(value, default_flow_style=True).splitlines()[0]}"]
+        arguments += [
+            "-p",
+            f"{name}:={yaml.safe_dump(value, default_flow_style=True).splitlines()[0]}",
+        ]
     return arguments
 
 

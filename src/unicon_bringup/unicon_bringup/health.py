@@ -1,4 +1,7 @@
-"""`ros2 run unicon_bringup health /avatar/executor`: exit status 0 when a node says on /diagnostics that it is well."""
+"""`ros2 run unicon_bringup health /avatar/executor`: exit status 0 when a node says that it is well.
+
+Nodes say so on /diagnostics, once a second.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ import rclpy
 import tyro
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.node import Node
+
 from unicon_ros.qos import COMMAND
 
 

@@ -18,12 +18,12 @@ import rclpy
 from ament_index_python.packages import get_package_prefix
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+
 from unicon.errors import UniconError
+from unicon_bringup.graph import GraphConfig
 from unicon_msgs.msg import ExecutorStatus
 from unicon_msgs.srv import QueueMotion, Reset
 from unicon_ros.qos import LATCHED
-
-from unicon_bringup.graph import GraphConfig
 
 READY_TIMEOUT_S = 30.0
 CALL_TIMEOUT_S = 5.0

@@ -13,26 +13,43 @@ import time
 from rclpy.executors import Executor
 from rclpy.node import Node
 from std_srvs.srv import Trigger
-from unicon.commands import Command, LoadPolicy, Reset, SelectSource, ThrowProjectile, kind_of, to_json
+
+from unicon.commands import (
+    Command,
+    LoadPolicy,
+    Reset,
+    SelectSource,
+    ThrowProjectile,
+    kind_of,
+    to_json,
+)
 from unicon.errors import UniconError
 from unicon.humanoid import HUMANOID
 from unicon.pacing import Pacer, PacerConfig
 from unicon.projectile import Projectile
 from unicon.target_frames import NS_PER_S
-from unicon.tracking import TICK_NS, CommandResult, Mode, TickReport, Tracker, TrackerConfig, config_to_dict
+from unicon.tracking import (
+    TICK_NS,
+    CommandResult,
+    Mode,
+    TickReport,
+    Tracker,
+    TrackerConfig,
+    config_to_dict,
+)
+from unicon_executor.parameters import PARAMETERS
+from unicon_executor.publishers import ExecutorPublishers
 from unicon_msgs.msg import ExecutorStatus, TargetFrames
 from unicon_msgs.srv import LoadPolicy as LoadPolicyService
 from unicon_msgs.srv import Reset as ResetService
 from unicon_msgs.srv import SelectSource as SelectSourceService
-from unicon_msgs.srv import Step, ThrowProjectile as ThrowProjectileService
+from unicon_msgs.srv import Step
+from unicon_msgs.srv import ThrowProjectile as ThrowProjectileService
 from unicon_ros.conversion import from_target_frames, to_stamp
 from unicon_ros.diagnostics import OK, WARN, Diagnostics
 from unicon_ros.parameters import declare_parameters
 from unicon_ros.process import PATIENCE_S, StopFlag, run_node
 from unicon_ros.qos import COMMAND, STREAM_SUBSCRIBER
-
-from unicon_executor.parameters import PARAMETERS
-from unicon_executor.publishers import ExecutorPublishers
 
 STATUS_PERIOD_S = 0.5
 DIAGNOSTICS_PERIOD_S = 1.0
@@ -232,9 +249,7 @@ class ExecutorNode(Node):
         if request.body:
             chosen["body"] = request.body
         try:
-            projectile = Projectile(
-                **chosen, azimuth_rad=request.azimuth, elevation_rad=request.elevation
-            )
+            projectile = Projectile(**chosen, azimuth_rad=request.azimuth, elevation_rad=request.elevation)
             response.success, response.message = self._apply(ThrowProjectile(projectile))
         except UniconError as error:
             response.success, response.message = False, str(error)

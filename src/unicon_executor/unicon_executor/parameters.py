@@ -39,5 +39,9 @@ PARAMETERS = (
         0,
         50,
     ),
-    Parameter("dump_dir", "", "folder for the last second of states when the physics fails; empty for none"),
+    Parameter(
+        "dump_dir",
+        "",
+        "folder for the last second of states when the physics fails; empty for none",
+    ),
 )

@@ -11,6 +11,8 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
+from visualization_msgs.msg import MarkerArray
+
 from unicon import rotations
 from unicon.humanoid import HUMANOID
 from unicon.humanoid.urdf import build_urdf
@@ -28,7 +30,6 @@ from unicon_ros.conversion import (
 )
 from unicon_ros.markers import HumanoidMarkers
 from unicon_ros.qos import COMMAND, EVENTS, LATCHED, STREAM
-from visualization_msgs.msg import MarkerArray
 
 ROOT_FRAME = "base_link"
 TICKS_PER_S = 60
@@ -48,7 +49,10 @@ class ExecutorPublishers:
         self._clock = node.create_publisher(Clock, "/clock", STREAM) if lockstep else None
         self._latched = [
             (node.create_publisher(HumanoidDescription, "humanoid", LATCHED), to_description()),
-            (node.create_publisher(String, "robot_description", LATCHED), String(data=build_urdf())),
+            (
+                node.create_publisher(String, "robot_description", LATCHED),
+                String(data=build_urdf()),
+            ),
         ]
         for publisher, message in self._latched:
             publisher.publish(message)

@@ -15,6 +15,7 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_srvs.srv import Trigger
+
 from unicon.errors import UniconError
 from unicon.recording.bag_writer import BagWriter, Topic
 from unicon.recording.continuity import Continuity
@@ -182,7 +183,9 @@ class RecorderNode(Node):
 
     def _warn_of(self, gap: Any) -> None:
         if gap is not None:
-            self.get_logger().error(f"lost {gap.found - gap.expected} messages of {gap.stream} before {gap.found}")
+            self.get_logger().error(
+                f"lost {gap.found - gap.expected} messages of {gap.stream} before {gap.found}"
+            )
 
     def _definition(self, type_name: str) -> str:
         if type_name not in self._definitions:

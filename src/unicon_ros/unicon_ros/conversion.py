@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Quaternion, Vector3
+
 from unicon.humanoid import HUMANOID
 from unicon.state import CharacterState
 from unicon.target_frames import NS_PER_S, RawFrame, RawTargetFrames

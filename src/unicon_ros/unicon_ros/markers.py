@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
+
 from unicon import rotations
 from unicon.humanoid.kinematics import forward_kinematics
 from unicon.humanoid.mjcf import Appearance
 from unicon.humanoid.table import BODIES, ShapeSpec
 from unicon.state import CharacterState
-from visualization_msgs.msg import Marker, MarkerArray
-
 from unicon_ros.conversion import WORLD_FRAME, to_stamp, to_vector
 
 
@@ -36,7 +36,11 @@ def _parts_of(body: int, shape: ShapeSpec) -> list[_Part]:
     length, width = float(np.linalg.norm(end - start)), 2 * shape.radius
     ball = np.full(3, width)
     tube = _Part(
-        body, Marker.CYLINDER, (start + end) / 2, _turn_z_to(end - start), np.array([width, width, length])
+        body,
+        Marker.CYLINDER,
+        (start + end) / 2,
+        _turn_z_to(end - start),
+        np.array([width, width, length]),
     )
     return [tube, *(_Part(body, Marker.SPHERE, p, upright, ball) for p in (start, end))]
 

@@ -1,4 +1,7 @@
-"""One table of parameters a node: declaration, ranges, error messages and the README's table follow from it."""
+"""One table of parameters a node.
+
+Declaration, ranges, error messages and the README's table follow from it.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from typing import Any
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
+
 from unicon.errors import UniconError
 
 

@@ -16,6 +16,7 @@ import rclpy
 from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+
 from unicon.errors import UniconError
 
 PATIENCE_S = 0.1

@@ -9,6 +9,7 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 from rich.console import Console
 from std_srvs.srv import Trigger
+
 from unicon.errors import UniconError
 from unicon.motion.clip import RATE_HZ
 from unicon.motion.fetch import fetch
@@ -80,9 +81,7 @@ class StitchingNode(Node):
 
     def _send(self, time_ns: int) -> None:
         window = self._stitcher.next_frames(time_ns)
-        message = to_target_frames(
-            self._source, self._sequence, window.time_ns, 1.0 / RATE_HZ, window.frames
-        )
+        message = to_target_frames(self._source, self._sequence, window.time_ns, 1.0 / RATE_HZ, window.frames)
         self._frames.publish(message)
         self._sequence += 1
         shown = (self._stitcher.playing.name, *self._stitcher.queued)
@@ -131,7 +130,10 @@ class StitchingNode(Node):
     def _clear_queue(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         count = len(self._stitcher.queued)
         self._stitcher.clear()
-        response.success, response.message = True, f"forgot {count} waiting motions; goes over to standing"
+        response.success, response.message = (
+            True,
+            f"forgot {count} waiting motions; goes over to standing",
+        )
         self._publish_status()
         return response
 
@@ -153,7 +155,11 @@ class StitchingNode(Node):
         self._diagnostics.publish(
             WARN if slow else OK,
             "does not keep up with real time" if slow else stitcher.playing.name or "stands",
-            {"sent": self._sequence, "queued": len(stitcher.queued), "missed ticks": statistics.missed},
+            {
+                "sent": self._sequence,
+                "queued": len(stitcher.queued),
+                "missed ticks": statistics.missed,
+            },
         )
 
 
