@@ -105,7 +105,7 @@ def test_a_flight_stays_a_flight():
     times = np.arange(120) / 60
     height = np.maximum(0.0, 3.0 * (times - 0.7) - 0.5 * 9.81 * (times - 0.7) ** 2) * (times > 0.7)
     corrected = height + 0.3 + height_correction(height + 0.3)
-    assert np.abs(corrected - height).max() < 0.02
+    assert np.abs(corrected - height).max() < 0.03
 
 
 def test_a_missing_joint_is_named(tmp_path):

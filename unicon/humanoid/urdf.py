@@ -1,7 +1,7 @@
 """The humanoid as URDF, for RViz, robot_state_publisher and other robot tools.
 
-URDF has one hinge a joint, so a body with several hinges gets links of next to no mass between them. Ellipsoids
-become spheres of their mean radius and capsules a cylinder with two spheres.
+URDF has one hinge a joint, so a body with several hinges gets links of next to no mass between them.
+Ellipsoids become spheres of their mean radius and capsules a cylinder with two spheres.
 """
 
 from __future__ import annotations
