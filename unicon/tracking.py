@@ -164,6 +164,10 @@ class Tracker:
         self._reset_when_due()
         return report
 
+    def go_on_from(self, last_time_ns: int, ticks: int, episode: int) -> None:
+        """Count on as if ``ticks`` ticks had been done already, the last of them at ``last_time_ns``."""
+        self._last_time_ns, self.ticks, self.episode = last_time_ns, ticks, episode
+
     def live_sources(self) -> list[str]:
         """Return the sources that were heard within the last half second."""
         return self.sources.live(self._last_time_ns or 0)

@@ -24,7 +24,7 @@ from unicon.recording.bag_reading import read_recording
 from unicon.recording.bag_repair import repair_bag
 from unicon.recording.bag_writer import BagWriter
 from unicon.recording.continuity import Continuity
-from unicon.recording.replay import replay_bag
+from unicon.recording.replay import replay_bag, replay_recording
 from unicon.recording.schema import nested_types
 from unicon.target_frames import pack
 
@@ -82,6 +82,28 @@ def test_a_recording_is_simulated_again_to_the_bit(session):
     result = replay_bag(session)
     assert result.difference is None
     assert (result.ticks, result.skipped) == (120, 0)
+
+
+def test_a_recording_that_begins_late_is_simulated_from_its_first_reset(session, tmp_path):
+    whole = read_recording(session)
+    late = whole._replace(states=whole.states[60:])
+    result = replay_recording(late, session)
+    assert result.difference is None
+    assert (result.first_tick, result.skipped, result.ticks) == (80, 20, 40)
+
+
+def test_a_recording_without_a_place_to_begin_says_what_to_do(session):
+    whole = read_recording(session)
+    with pytest.raises(InputFileError, match="in the middle of a motion"):
+        replay_recording(whole._replace(states=whole.states[100:]), session)
+
+
+def test_a_gap_in_the_states_or_targets_is_said(session):
+    whole = read_recording(session)
+    with pytest.raises(InputFileError, match="1 states are missing before tick 31"):
+        replay_recording(whole._replace(states=whole.states[:30] + whole.states[31:]), session)
+    with pytest.raises(InputFileError, match="lacks the target message"):
+        replay_recording(whole._replace(targets=whole.targets[10:]), session)
 
 
 def test_one_float_that_differs_in_its_last_bit_is_found(tmp_path):

@@ -60,7 +60,8 @@ def replay_recording(recording: Recording, folder: Path) -> Replay:
     first = _first_state(recording, folder)
     states = recording.states[first:]
     tracker = Tracker(TrackerConfig(**start["config"]))
-    commands = _bring_to(tracker, recording.events, states[0])
+    before_ns = recording.states[first - 1].time_ns if first else states[0].time_ns - TICK_NS
+    commands = _bring_to(tracker, recording.events, states[0], before_ns)
     inbox = _Inbox(recording.targets, folder)
     for expected, state in enumerate(states, states[0].tick):
         if state.tick != expected:
@@ -110,9 +111,12 @@ def _first_state(recording: Recording, folder: Path) -> int:
 
 
 def _bring_to(
-    tracker: Tracker, events: list[RecordedEvent], first: RecordedState
+    tracker: Tracker, events: list[RecordedEvent], first: RecordedState, before_ns: int
 ) -> dict[int, list[RecordedEvent]]:
-    """Bring the tracker to the first tick; return the commands from then on by tick."""
+    """Bring the tracker to the first tick; return the commands from then on by tick.
+
+    ``before_ns`` is the time of the tick before it.
+    """
     by_tick: dict[int, list[RecordedEvent]] = {}
     last_start = max(i for i, event in enumerate(events) if event.kind == "start")
     for event in events[last_start + 1 :]:
@@ -125,8 +129,7 @@ def _bring_to(
     resets = any(_is_clean_start(event) for event in by_tick.get(first.tick, []))
     for missed in range(0 if resets else first.tick, 0, -1):
         tracker.tick(first.time_ns - missed * TICK_NS)
-    tracker.ticks = first.tick
-    tracker.episode = first.episode - (1 if resets else 0)
+    tracker.go_on_from(before_ns, first.tick, first.episode - (1 if resets else 0))
     return by_tick
 
 
