@@ -65,6 +65,7 @@ def measure(config: BenchConfig, folder: Path) -> dict[str, object]:
     with GraphSession(graph, folder / "graph.log") as session:
         session.wait_until_ready()
         session.wait_for_topics(("state", "target_frames", "events"))
+        session.spin_for(1.0)
         session.reset()
         for motion in MOTIONS * 3:
             session.queue(motion, 0.5)

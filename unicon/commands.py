@@ -74,7 +74,7 @@ def from_json(kind: str, arguments: str) -> Command:
     try:
         values = json.loads(arguments)
         if kind == "throw_projectile":
-            values = {"projectile": Projectile(**values["projectile"])}
+            return ThrowProjectile(Projectile(**values["projectile"]))
         return KINDS[kind](**values)
     except (TypeError, KeyError, ValueError) as error:
         raise UniconError(f"the arguments {arguments!r} do not fit the command {kind!r}") from error

@@ -206,10 +206,8 @@ class Simulation:
 
     def _next_ball(self) -> int:
         """Return a parked ball, or the oldest one."""
-        return max(
-            range(self.config.balls),
-            key=lambda i: np.inf if self._ball_ages[i] is None else self._ball_ages[i],
-        )
+        ages = [np.inf if age is None else age for age in self._ball_ages]
+        return int(np.argmax(ages))
 
     def _ball_geom(self, index: int) -> int:
         return self._model.geom(f"ball{index}").id

@@ -103,7 +103,14 @@ def test_a_gap_in_the_states_or_targets_is_said(session):
     with pytest.raises(InputFileError, match="1 states are missing before tick 31"):
         replay_recording(whole._replace(states=whole.states[:30] + whole.states[31:]), session)
     with pytest.raises(InputFileError, match="lacks the target message"):
-        replay_recording(whole._replace(targets=whole.targets[10:]), session)
+        replay_recording(whole._replace(targets=whole.targets[:-5]), session)
+
+
+def test_messages_that_are_missing_before_a_reset_do_no_harm(session):
+    whole = read_recording(session)
+    result = replay_recording(whole._replace(targets=whole.targets[10:]), session)
+    assert result.difference is None
+    assert result.first_tick == 80
 
 
 def test_one_float_that_differs_in_its_last_bit_is_found(tmp_path):

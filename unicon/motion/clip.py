@@ -51,7 +51,7 @@ class Clip:
             root_pos_w=self.frames.root_pos_w,
             root_quat_w=self.frames.root_quat_w,
             joint_pos=self.frames.joint_pos,
-            **texts,
+            **texts,  # pyright: ignore[reportArgumentType] - its stub takes them for allow_pickle
         )
 
 

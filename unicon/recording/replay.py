@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -59,7 +59,7 @@ def replay_recording(recording: Recording, folder: Path) -> Replay:
     start = _start_event(recording.events, folder)
     first = _first_state(recording, folder)
     states = recording.states[first:]
-    tracker = Tracker(TrackerConfig(**start["config"]))
+    tracker = Tracker(_read_config(start, folder))
     before_ns = recording.states[first - 1].time_ns if first else states[0].time_ns - TICK_NS
     commands = _bring_to(tracker, recording.events, states[0], before_ns)
     inbox = _Inbox(recording.targets, folder)
@@ -79,7 +79,7 @@ def replay_recording(recording: Recording, folder: Path) -> Replay:
     return Replay(len(states), states[0].tick, first, None)
 
 
-def _start_event(events: list[RecordedEvent], folder: Path) -> dict[str, dict[str, object]]:
+def _start_event(events: list[RecordedEvent], folder: Path) -> dict[str, Any]:
     found = [event for event in events if event.kind == "start"]
     if not found:
         raise InputFileError(f"{folder}: has no event 'start' of an executor; record the topic events too")
@@ -88,6 +88,13 @@ def _start_event(events: list[RecordedEvent], folder: Path) -> dict[str, dict[st
         other = settings["humanoid_id"]
         raise InputFileError(f"{folder}: was recorded with humanoid {other}, this is {HUMANOID.id}")
     return settings
+
+
+def _read_config(start: dict[str, Any], folder: Path) -> TrackerConfig:
+    try:
+        return TrackerConfig(**start["config"])
+    except (KeyError, TypeError) as error:
+        raise InputFileError(f"{folder}: its event 'start' is of another version ({error})") from error
 
 
 def _is_clean_start(event: RecordedEvent) -> bool:
@@ -100,14 +107,22 @@ def _first_state(recording: Recording, folder: Path) -> int:
     earliest = recording.states[0]
     disturbed = any(e.tick <= earliest.tick and e.kind != "start" for e in recording.events)
     if earliest.mode == Mode.WAITING and not disturbed:
-        return 0
-    for index, state in enumerate(recording.states):
-        if state.tick in starts:
-            return index
+        starts.add(earliest.tick)
+    found = [index for index, state in enumerate(recording.states) if state.tick in starts]
+    if found:
+        whole_from = _whole_from(recording)
+        return next((index for index in found if index >= whole_from), found[-1])
     raise InputFileError(
         f"{folder}: begins at tick {recording.states[0].tick}, in the middle of a motion: begin a recording "
         "before the executor, or call the executor's ~/reset once it runs"
     )
+
+
+def _whole_from(recording: Recording) -> int:
+    """Return the index of the first state from which on every followed target message was recorded."""
+    recorded = {(message.source, message.sequence) for message in recording.targets}
+    lacking = [i for i, state in enumerate(recording.states) if not recorded.issuperset(state.accepted)]
+    return lacking[-1] + 1 if lacking else 0
 
 
 def _bring_to(

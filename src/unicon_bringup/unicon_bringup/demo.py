@@ -91,8 +91,8 @@ def play(config: DemoConfig, bag: Path, console: Console) -> None:
     with GraphSession(graph, config.out / "graph.log") as session:
         session.wait_until_ready()
         session.wait_for_topics(("state", "target_frames", "events"))
-        session.reset()
         session.spin_for(SETTLE_S)
+        session.reset()
         for motion in config.motions:
             session.queue(motion, config.transition_s)
         columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
