@@ -15,9 +15,8 @@ import hashlib
 import json
 from typing import Any
 
-from array_api_compat import array_namespace
-
 from unicon import rotations
+from unicon.arrays import array_namespace
 from unicon.humanoid.kinematics import BodyKinematics, forward_kinematics
 from unicon.state import CharacterState
 

@@ -22,9 +22,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from array_api_compat import array_namespace
-
 from unicon import rotations
+from unicon.arrays import array_namespace
 from unicon.humanoid.kinematics import BodyKinematics, forward_kinematics
 from unicon.state import CharacterState, stack
 

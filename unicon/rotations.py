@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from array_api_compat import array_namespace
+from unicon.arrays import array_namespace
 
 Array = Any
 """A numpy array or a torch tensor."""

@@ -12,9 +12,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from array_api_compat import array_namespace
 
 from unicon import rotations
+from unicon.arrays import array_namespace
 
 Array = Any
 

@@ -17,9 +17,9 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from array_api_compat import array_namespace
 
 from unicon import rotations
+from unicon.arrays import array_namespace
 from unicon.humanoid.table import BODIES, HINGES
 from unicon.state import CharacterState
 

@@ -57,14 +57,18 @@ class SessionReport:
         return {**asdict(self), **spreads}
 
 
-def report_on(folder: Path) -> SessionReport:
-    """Return the report on a bag.
+def report_on(folder: Path, skip_s: float = 0.0) -> SessionReport:
+    """Return the report on a bag, without its first ``skip_s`` seconds.
 
     Raises:
         InputFileError: when it cannot be read, or holds no states or status.
     """
     recording = read_recording(folder, ("state", "target_frames", "status"))
     states, statuses = recording.states, recording.statuses
+    if states and skip_s:
+        first = states[0].tick + round(skip_s * CONTROL_HZ)
+        states = [state for state in states if state.tick >= first]
+        statuses = [status for status in statuses if status.ticks >= first]
     if len(states) < 2 or not statuses:
         raise InputFileError(f"{folder}: holds too few states or no status for a report")
     actual, target = stack([s.actual for s in states]), stack([s.target for s in states])
