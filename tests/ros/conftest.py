@@ -85,10 +85,14 @@ class Graph:
         return future.result()
 
     def close(self) -> None:
+        """End everything; a second call does nothing."""
+        if not self.context.ok():
+            return
         for process in self.processes:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
+        self.executor.remove_node(self.node)
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.try_shutdown(context=self.context)

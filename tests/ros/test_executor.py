@@ -189,7 +189,7 @@ def run_in_lockstep(graph: Graph) -> list[bytes]:
 
 def test_in_lockstep_the_same_messages_give_the_same_bits(graph, tmp_path):
     first = run_in_lockstep(graph)
-    graph.node.destroy_node()
+    graph.close()
     other = Graph(graph.domain, tmp_path)
     try:
         assert run_in_lockstep(other) == first
