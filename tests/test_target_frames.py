@@ -76,6 +76,8 @@ def test_a_bad_header_is_refused(changes, reason):
         ({"root_quat_w": np.array([0.9, 0.0, 0.0, 0.0])}, RejectReason.NOT_UNIT_QUATERNION),
         ({"root_quat_w": np.zeros(4)}, RejectReason.NOT_UNIT_QUATERNION),
         ({"root_pos_w": np.array([1e5, 0.0, 0.0])}, RejectReason.OUT_OF_RANGE),
+        ({"root_pos_w": np.array([0.0, 0.0, -50.0])}, RejectReason.OUT_OF_RANGE),
+        ({"root_pos_w": np.array([0.0, 0.0, 25.0])}, RejectReason.OUT_OF_RANGE),
         ({"root_lin_vel_w": np.array([0.0, 0.0, 1e300])}, RejectReason.OUT_OF_RANGE),
         ({"joint_vel": np.full(35, -201.0)}, RejectReason.OUT_OF_RANGE),
     ],

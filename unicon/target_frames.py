@@ -99,6 +99,9 @@ class TargetLimits:
     unit_tolerance: float = 1e-3
     """How far a quaternion's length may be from 1."""
     max_position_m: float = 1e4
+    min_height_m: float = -1.0
+    """Lowest root; below the floor there is nothing to stand on."""
+    max_height_m: float = 20.0
     max_speed_m_s: float = 100.0
     max_spin_rad_s: float = 200.0
     max_angle_rad: float = 4 * np.pi
@@ -199,6 +202,10 @@ def _check_numbers(rows: np.ndarray, limits: TargetLimits) -> None:
         if largest > bound:
             far = f"a {name} is {largest:.3g} {unit}, at most {bound:.4g} is allowed"
             raise _refuse(RejectReason.OUT_OF_RANGE, far)
+    lowest, highest = pos[:, 2].min(), pos[:, 2].max()
+    if lowest < limits.min_height_m or highest > limits.max_height_m:
+        allowed = f"expected {limits.min_height_m} to {limits.max_height_m} m"
+        raise _refuse(RejectReason.OUT_OF_RANGE, f"a root's height is {lowest:.4g} m, {allowed}")
     length = np.linalg.norm(quat, axis=1)
     if np.abs(length - 1.0).max() > limits.unit_tolerance:
         off = f"a root quaternion has the length {length[np.abs(length - 1).argmax()]:.4f}, expected 1"

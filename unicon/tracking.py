@@ -124,6 +124,7 @@ class Tracker:
         self._accepted: list[tuple[str, int]] = []
         self._notices: list[str] = []
         self._last_time_ns: int | None = None
+        self._fault_tick: int | None = None
         self._history: deque[tuple[np.ndarray, np.ndarray]] = deque(maxlen=HISTORY_TICKS)
         self._rest = HUMANOID.rest_state()
         self._start_over(self._rest)
@@ -231,9 +232,13 @@ class Tracker:
     def _recover_from_fault(self, before: CharacterState) -> None:
         self.faults += 1
         self.episode += 1
-        self._start_over(hold(before))
-        dumped = self._dump()
-        self._notices.append(f"the physics failed: went back to the last good state{dumped}")
+        again = self._fault_tick is not None and self._fault_tick == self.ticks - 1
+        self._fault_tick = self.ticks
+        # A state that fails at once would fail for ever, so the second time it is left for the rest pose.
+        self._start_over(self._rest if again else hold(before))
+        dumped = "" if again else self._dump()
+        place = "the rest pose" if again else "the last good state"
+        self._notices.append(f"the physics failed: went back to {place}{dumped}")
 
     def _dump(self) -> str:
         if not self.config.dump_dir:
@@ -254,6 +259,7 @@ class Tracker:
                 selected, self.sources = self.sources.selected, TargetSources(SourcesConfig())
                 self.sources.selected = selected
                 self._accepted = []
+                self._fault_tick = None
                 self._start_over(self._rest)
                 self.episode += 1
                 return "stands in its rest pose; all targets are forgotten"
