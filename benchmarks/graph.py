@@ -52,7 +52,7 @@ def measure(config: BenchConfig, folder: Path) -> dict[str, object]:
     graph = GraphConfig(avatar="bench", record=True, output=str(bag))
     with GraphSession(graph, folder / "graph.log") as session:
         session.wait_until_ready()
-        session.wait_for_topics(("state", "target_frames", "events"))
+        session.wait_until_recorded("state", "target_frames of stitching")
         session.spin_for(1.0)
         session.reset()
         for motion in MOTIONS * 3:

@@ -103,7 +103,16 @@ def test_a_gap_in_the_states_or_targets_is_said(session):
     with pytest.raises(InputFileError, match="1 states are missing before tick 31"):
         replay_recording(whole._replace(states=whole.states[:30] + whole.states[31:]), session)
     with pytest.raises(InputFileError, match="lacks the target message"):
-        replay_recording(whole._replace(targets=whole.targets[:-5]), session)
+        torn = [t for t in whole.targets if not 90 <= t.sequence < 95]
+        replay_recording(whole._replace(targets=torn), session)
+
+
+def test_target_messages_that_a_recorder_missed_at_its_very_end_shorten_the_replay(session):
+    whole = read_recording(session)
+    early = [t for t in whole.targets if t.sequence < 114]
+    result = replay_recording(whole._replace(targets=early), session)
+    assert result.difference is None
+    assert result.ticks == 114
 
 
 def test_messages_that_are_missing_before_a_reset_do_no_harm(session):

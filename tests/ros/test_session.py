@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
 from rosbags.highlevel import AnyReader
 from std_srvs.srv import Trigger
 
@@ -14,7 +15,7 @@ from unicon.recording.replay import replay_bag
 from unicon.recording.session_report import report_on
 from unicon_msgs.msg import CharacterState, ExecutorStatus, SchedulerStatus
 from unicon_msgs.srv import ListMotions, QueueMotion, Reset, StartRecording
-from unicon_ros.qos import LATCHED, STREAM_SUBSCRIBER
+from unicon_ros.qos import COMMAND, LATCHED, STREAM_SUBSCRIBER
 
 pytestmark = pytest.mark.ros
 
@@ -45,13 +46,14 @@ def test_a_session_is_recorded_whole_and_simulated_again_to_the_bit(graph, libra
     executor = graph.start("unicon_executor", "executor_node")
     stitching = graph.start("unicon_schedulers", "stitching_node", library=library)
     states = graph.listen(CharacterState, "state", STREAM_SUBSCRIBER)
-    taken = ("/a/state", "/a/target_frames", "/a/events")
+    diagnostics = graph.listen(DiagnosticArray, "/diagnostics", COMMAND)
 
-    def is_recorded() -> bool:
-        infos = [graph.node.get_subscriptions_info_by_topic(name) for name in taken]
-        return all(any(i.node_name == "recorder" for i in found) for found in infos)
+    def received() -> set[str]:
+        statuses = [status for message in diagnostics for status in message.status]
+        return {value.key for s in statuses if s.name == "/a/recorder" for value in s.values}
 
-    graph.until(is_recorded, "the recorder on all topics")
+    streams = {"state", "target_frames of stitching"}
+    graph.until(lambda: received() >= streams, "the recorder receiving both streams")
     assert graph.call(Reset, "executor/reset").success
     assert graph.call(QueueMotion, "stitching/queue_motion", QueueMotion.Request(name="sway")).success
     last = states[-1].tick
@@ -59,7 +61,8 @@ def test_a_session_is_recorded_whole_and_simulated_again_to_the_bit(graph, libra
     assert [end(process) for process in (stitching, executor, recorder)] == [0, 0, 0]
     with AnyReader([bag]) as reader:
         topics = set(reader.topics)
-    assert {*taken, "/a/joint_states", "/a/odom", "/a/markers", "/a/status", "/diagnostics"} <= topics
+    taken = {"/a/state", "/a/target_frames", "/a/events"}
+    assert taken | {"/a/joint_states", "/a/odom", "/a/markers", "/a/status", "/diagnostics"} <= topics
     result = replay_bag(bag)
     assert result.difference is None
     assert result.ticks > 100

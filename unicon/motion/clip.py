@@ -11,9 +11,9 @@ import numpy as np
 from unicon import rotations
 from unicon.errors import InputFileError
 from unicon.humanoid import HUMANOID
+from unicon.motion.clip_index import RATE_HZ
 from unicon.state import CharacterState, differentiate, move
 
-RATE_HZ = 60.0
 _TEXTS = ("name", "source", "licence", "label")
 
 

@@ -35,6 +35,8 @@ class SourceMotion:
     source: str = ""
     licence: str = ""
     label: str = ""
+    local_pos: np.ndarray | None = None
+    """Each joint in its parent's frame ``(T, J, 3)`` [m] where that changes over time; None: the offsets."""
 
     def rest_positions(self) -> np.ndarray:
         """Return where the joints are in the rest pose ``(J, 3)`` [m], the root at the origin."""
@@ -57,6 +59,7 @@ class SourceMotion:
         positions[:, 0] = self.root_pos
         for joint in range(1, len(self.parents)):
             parent = self.parents[joint]
-            arm = rotations.rotate(turns[:, parent], self.offsets[joint])
+            place = self.offsets[joint] if self.local_pos is None else self.local_pos[:, joint]
+            arm = rotations.rotate(turns[:, parent], place)
             positions[:, joint] = positions[:, parent] + arm
         return positions

@@ -21,6 +21,9 @@ from unicon.recording.bag_reading import RecordedEvent, RecordedState, Recording
 from unicon.target_frames import RawTargetFrames, pack
 from unicon.tracking import TICK_NS, Mode, TickReport, Tracker, TrackerConfig
 
+TORN_TICKS = 12
+"""In how many ticks at the end of a recording target messages may be missing."""
+
 
 class Difference(NamedTuple):
     """The first place where a replay is not the recording."""
@@ -57,6 +60,7 @@ def replay_recording(recording: Recording, folder: Path) -> Replay:
     if not recording.states:
         raise InputFileError(f"{folder}: holds no states of an executor; record the topic state too")
     start = _start_event(recording.events, folder)
+    recording = recording._replace(states=_without_torn_end(recording))
     first = _first_state(recording, folder)
     states = recording.states[first:]
     tracker = Tracker(_read_config(start, folder))
@@ -123,6 +127,20 @@ def _whole_from(recording: Recording) -> int:
     recorded = {(message.source, message.sequence) for message in recording.targets}
     lacking = [i for i, state in enumerate(recording.states) if not recorded.issuperset(state.accepted)]
     return lacking[-1] + 1 if lacking else 0
+
+
+def _without_torn_end(recording: Recording) -> list[RecordedState]:
+    """Return the states without the last ones whose target messages came too late to be recorded.
+
+    A recorder that ends while all goes on may have taken in a state but not yet a target message that the
+    executor had followed by then.
+    """
+    recorded = {(message.source, message.sequence) for message in recording.targets}
+    count = len(recording.states)
+    for index in range(max(count - TORN_TICKS, 1), count):
+        if not recorded.issuperset(recording.states[index].accepted):
+            return recording.states[:index]
+    return recording.states
 
 
 def _bring_to(

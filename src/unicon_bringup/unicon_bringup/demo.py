@@ -90,7 +90,7 @@ def play(config: DemoConfig, bag: Path, console: Console) -> None:
     graph = GraphConfig(avatar=config.avatar, record=True, output=str(bag.absolute()))
     with GraphSession(graph, config.out / "graph.log") as session:
         session.wait_until_ready()
-        session.wait_for_topics(("state", "target_frames", "events"))
+        session.wait_until_recorded("state", "target_frames of stitching")
         session.spin_for(SETTLE_S)
         session.reset()
         for motion in config.motions:

@@ -16,6 +16,7 @@ from typing import Any, Self
 
 import rclpy
 from ament_index_python.packages import get_package_prefix
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
@@ -23,7 +24,7 @@ from unicon.errors import UniconError
 from unicon_bringup.graph import GraphConfig
 from unicon_msgs.msg import ExecutorStatus
 from unicon_msgs.srv import QueueMotion, Reset
-from unicon_ros.qos import LATCHED
+from unicon_ros.qos import COMMAND, LATCHED
 
 READY_TIMEOUT_S = 30.0
 CALL_TIMEOUT_S = 5.0
@@ -106,15 +107,21 @@ class GraphSession:
         """Wait for the executor's first status."""
         self.spin_until(lambda: self.status is not None, READY_TIMEOUT_S, "status of the executor")
 
-    def wait_for_topics(self, names: tuple[str, ...]) -> None:
-        """Wait until the recorder takes in topics of the avatar."""
+    def wait_until_recorded(self, *streams: str) -> None:
+        """Wait until the recorder says that it receives numbered streams, e.g. ``state``.
 
-        def are_taken() -> bool:
-            full = [f"/{self.config.avatar}/{name}" for name in names]
-            found = [self.node.get_subscriptions_info_by_topic(name) for name in full]
-            return all(any(s.node_name == "recorder" for s in infos) for infos in found)
+        That a subscription is listed does not mean that it is matched with the publisher yet.
+        """
+        recorder = f"/{self.config.avatar}/recorder"
+        received: set[str] = set()
 
-        self.spin_until(are_taken, READY_TIMEOUT_S, "recorder on the topics " + ", ".join(names))
+        def take(message: DiagnosticArray) -> None:
+            received.update(v.key for s in message.status if s.name == recorder for v in s.values)
+
+        subscription = self.node.create_subscription(DiagnosticArray, "/diagnostics", take, COMMAND)
+        what = "recording of " + ", ".join(streams)
+        self.spin_until(lambda: received.issuperset(streams), READY_TIMEOUT_S, what)
+        self.node.destroy_subscription(subscription)
 
     def call(self, service_type: type, name: str, request: Any) -> Any:
         """Call a service of the graph and return its response.

@@ -14,8 +14,12 @@ def _profile(reliable: bool, latched: bool, depth: int) -> QoSProfile:
     )
 
 
-STREAM = _profile(reliable=True, latched=False, depth=1)
-"""Publishers of streams: the newest message wins, and every subscriber matches."""
+STREAM = _profile(reliable=True, latched=False, depth=60)
+"""Publishers of streams: a second of them is kept for resending to a recorder, which must not lose any.
+
+With a depth of 1 a message that a busy machine delivers late is overwritten before it can be resent.
+Subscribers that only want the newest are best effort and never cause a resend.
+"""
 STREAM_SUBSCRIBER = _profile(reliable=False, latched=False, depth=5)
 """Subscribers of streams that only want the newest."""
 COMMAND = _profile(reliable=True, latched=False, depth=10)
