@@ -98,7 +98,9 @@ def test_a_recording_without_a_place_to_begin_says_what_to_do(session):
         replay_recording(whole._replace(states=whole.states[100:]), session)
 
 
-def test_a_gap_in_the_states_or_targets_is_said(session):
+def test_a_gap_in_the_states_or_targets_is_said(tmp_path):
+    session = tmp_path / "long"
+    record_session(session, ticks=200)
     whole = read_recording(session)
     with pytest.raises(InputFileError, match="1 states are missing before tick 31"):
         replay_recording(whole._replace(states=whole.states[:30] + whole.states[31:]), session)

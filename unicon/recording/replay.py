@@ -21,7 +21,7 @@ from unicon.recording.bag_reading import RecordedEvent, RecordedState, Recording
 from unicon.target_frames import RawTargetFrames, pack
 from unicon.tracking import TICK_NS, Mode, TickReport, Tracker, TrackerConfig
 
-TORN_TICKS = 12
+TORN_TICKS = 60
 """In how many ticks at the end of a recording target messages may be missing."""
 
 
