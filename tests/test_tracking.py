@@ -57,6 +57,12 @@ def test_it_follows_a_source_and_says_what_it_took_in():
     assert min(reports[-1].reward_terms) > 0.95
 
 
+def test_a_message_that_comes_before_the_first_tick_is_followed_from_it():
+    (report,) = run(Tracker(), 1, standing_feed)
+    assert report.mode is Mode.FOLLOWING
+    assert report.accepted == (("test", 0),)
+
+
 def test_when_targets_stop_it_holds_after_half_a_second_and_stays_up():
     tracker = Tracker()
     run(tracker, 30, standing_feed)

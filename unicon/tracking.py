@@ -130,10 +130,14 @@ class Tracker:
         self._start_over(self._rest)
 
     def offer(self, raw: RawTargetFrames) -> RejectReason | None:
-        """Take in a target message, or count it as refused and return the reason."""
+        """Take in a target message, or count it as refused and return the reason.
+
+        Before the first tick there is no time yet: a message counts as heard when its frames begin.
+        """
         try:
             targets = check(raw, self._last_time_ns, self._limits)
-            self.sources.offer(targets, self._last_time_ns or 0)
+            first_ns = int(targets.times_ns[0])
+            self.sources.offer(targets, first_ns if self._last_time_ns is None else self._last_time_ns)
         except RejectedTargetsError as error:
             self.rejected[error.reason] += 1
             return error.reason

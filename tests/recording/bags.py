@@ -131,8 +131,8 @@ class SessionBag:
         self.writer.write(name, data, time_ns, time_ns)
 
 
-def record_session(folder: Path, ticks: int = 120, spoil_tick: int = -1) -> None:
-    """Run a tracker through targets, a ball, a reset and a gap, and record it; one float may be spoilt."""
+def record_session(folder: Path, ticks: int = 120, spoil_tick: int = -1, first_target: int = 5) -> None:
+    """Run a tracker through targets, a ball, a reset and gaps, and record it; one float may be spoilt."""
     bag, tracker = SessionBag(folder), Tracker()
     start = {"config": asdict(TrackerConfig()), "humanoid_id": HUMANOID.id}
     bag.write("/a/events", event_message(START_NS, 0, "start", json.dumps(start)), START_NS)
@@ -144,7 +144,7 @@ def record_session(folder: Path, ticks: int = 120, spoil_tick: int = -1) -> None
             tracker.apply(commands[tick])
             event = event_message(now, tick, kind_of(commands[tick]), to_json(commands[tick]))
             bag.write("/a/events", event, now)
-        if tick >= 5 and tick % 7:
+        if tick >= first_target and (tick + 1) % 7:
             raw = message(tick, now + TICK_NS, path[tick], path[tick + 1])
             tracker.offer(raw)
             bag.write("/a/target_frames", targets_message(raw), now)

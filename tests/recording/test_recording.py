@@ -84,6 +84,12 @@ def test_a_recording_is_simulated_again_to_the_bit(session):
     assert (result.ticks, result.skipped) == (120, 0)
 
 
+def test_a_target_that_came_before_the_first_tick_is_replayed_as_it_was(tmp_path):
+    record_session(tmp_path / "bag", ticks=20, first_target=0)
+    result = replay_bag(tmp_path / "bag")
+    assert (result.difference, result.ticks) == (None, 20)
+
+
 def test_a_recording_that_begins_late_is_simulated_from_its_first_reset(session, tmp_path):
     whole = read_recording(session)
     late = whole._replace(states=whole.states[60:])

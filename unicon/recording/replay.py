@@ -162,7 +162,8 @@ def _bring_to(
     resets = any(_is_clean_start(event) for event in by_tick.get(first.tick, []))
     for missed in range(0 if resets else first.tick, 0, -1):
         tracker.tick(first.time_ns - missed * TICK_NS)
-    tracker.go_on_from(before_ns, first.tick, first.episode - (1 if resets else 0))
+    if first.tick:
+        tracker.go_on_from(before_ns, first.tick, first.episode - (1 if resets else 0))
     return by_tick
 
 
