@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
 STAMPS = VENV / ".unicon-stamps"
 WORKSPACE = ROOT / "ros_ws"
+KERNEL = ROOT / "unicon" / "train" / "batch_simulator"
 LOG = VENV / "setup.log"
 GROUPS = ("base", "ros", "train", "dev")
 PYTHONS = ((3, 12), (3, 11), (3, 13))
@@ -142,6 +143,10 @@ def plan(groups, with_ros):
     if has_packages():
         build = python + hash_tree(WORKSPACE / "src", BUILD_INPUTS)
         steps.append(("building the ROS workspace", "workspace", build, build_workspace))
+    if "train" in groups:
+        kernel = python + hash_tree(KERNEL, ("*.cpp", "*.hpp", "*.py"))
+        kernel += hash_tree(ROOT / "unicon" / "humanoid", ("*.py",))
+        steps.append(("compiling the batch simulator", "kernel", kernel, compile_kernel))
     steps.append(("looking for OpenGL", "gl", python, provide_gl))
     return steps
 
@@ -252,6 +257,12 @@ def build_workspace():
         "--cmake-args",
     ]
     run(colcon + cmake, "building the ROS workspace", cwd=WORKSPACE, env=environment)
+
+
+def compile_kernel():
+    """Compile the trainer's simulator; return what to say where it cannot be: training goes on without."""
+    command = [str(VENV / "bin" / "python"), "-m", "unicon.train.batch_simulator.build"]
+    return "" if succeeds(command) else "it could not be compiled; training uses MuJoCo instead, slowly"
 
 
 def provide_gl():

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 from rich.console import Console
 
 from unicon.errors import UniconError
+from unicon.motion.motion_commands import MotionsImport, MotionsList, MotionsSplit, MotionsStats, MotionsTree
 from unicon.render.show import RenderConfig
+from unicon.tool_commands import FetchCmu, MotionsExport, MotionsInspect, find_clip
+
+if TYPE_CHECKING:
+    from unicon.render.take import Take
 
 
 @dataclass(frozen=True)
@@ -35,21 +40,23 @@ class Render:
 
     def run(self, console: Console) -> int:
         """Draw what was asked for; a video and a contact sheet beside each other where nothing was."""
-        from dataclasses import replace
-
-        from unicon.render.show import render
         from unicon.render.take import load_take
 
-        config = self.config
-        if config.video is None and config.contact_sheet is None:
-            name = self.path.resolve().stem
-            folder = Path("out/render")
-            config = replace(config, video=folder / f"{name}.mp4", contact_sheet=folder / f"{name}.png")
-        render(load_take(self.path), config, console)
-        for written in (config.video, config.contact_sheet):
-            if written is not None:
-                console.print(str(written))
-        return 0
+        return draw(load_take(self.path), self.config, self.path.resolve().stem, console)
+
+
+def draw(take: Take, config: RenderConfig, name: str, console: Console) -> int:
+    """Draw a take, into out/render where no file is given, and print what was written."""
+    from unicon.render.show import render
+
+    if config.video is None and config.contact_sheet is None:
+        folder = Path("out/render")
+        config = replace(config, video=folder / f"{name}.mp4", contact_sheet=folder / f"{name}.png")
+    render(take, config, console)
+    for written in (config.video, config.contact_sheet):
+        if written is not None:
+            console.print(str(written), soft_wrap=True)
+    return 0
 
 
 @dataclass(frozen=True)
@@ -92,34 +99,47 @@ class BagReplay:
 
 
 @dataclass(frozen=True)
-class MotionsFetch:
-    """Fetch free motions into the cache."""
+class FetchFree:
+    """Fetch the free motions that a package registry holds (DeepMimic's) into the cache."""
 
     def run(self, console: Console) -> int:
         """Fetch them and print where they are."""
         from unicon.motion.fetch import fetch
 
-        console.print(str(fetch(console).folder))
+        console.print(str(fetch(console).folder), soft_wrap=True)
         return 0
+
+
+Fetch = Annotated[FetchFree, tyro.conf.subcommand("free")] | Annotated[FetchCmu, tyro.conf.subcommand("cmu")]
 
 
 @dataclass(frozen=True)
-class MotionsList:
-    """List the fetched motions."""
+class MotionsFetch:
+    """Fetch motions: the free ones of a package registry where nothing else is named."""
+
+    command: Annotated[Fetch, tyro.conf.arg(name="")] = field(default_factory=FetchFree)
 
     def run(self, console: Console) -> int:
-        """Print a table of them."""
-        from rich.table import Table
+        """Run the command."""
+        return self.command.run(console)
 
-        from unicon.motion.fetch import fetch
 
-        library = fetch(console)
-        table = Table("motion", "seconds", "class", "source", "licence")
-        for name in library.names:
-            clip = library.get(name)
-            table.add_row(name, f"{clip.duration_s:.1f}", clip.label, clip.source, clip.licence)
-        console.print(table)
-        return 0
+@dataclass(frozen=True)
+class MotionsRender:
+    """Draw a clip of a library as a video and a contact sheet."""
+
+    clip: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="CLIP")]
+    """Its name in the library, or its file (*.npz)."""
+    config: Annotated[RenderConfig, tyro.conf.arg(name="")]
+    library: Path | None = None
+    """Library that the name is of; $UNICON_LIBRARY or else the fetched one where it is not given."""
+
+    def run(self, console: Console) -> int:
+        """Draw what was asked for; a video and a contact sheet beside each other where nothing was."""
+        from unicon.render.take import take_from_clip
+
+        clip, _ = find_clip(self.clip, self.library, console)
+        return draw(take_from_clip(clip), self.config, clip.name, console)
 
 
 Bag = (
@@ -129,7 +149,14 @@ Bag = (
 )
 Motions = (
     Annotated[MotionsFetch, tyro.conf.subcommand("fetch")]
+    | Annotated[MotionsImport, tyro.conf.subcommand("import")]
     | Annotated[MotionsList, tyro.conf.subcommand("list")]
+    | Annotated[MotionsStats, tyro.conf.subcommand("stats")]
+    | Annotated[MotionsTree, tyro.conf.subcommand("tree")]
+    | Annotated[MotionsSplit, tyro.conf.subcommand("split")]
+    | Annotated[MotionsInspect, tyro.conf.subcommand("inspect")]
+    | Annotated[MotionsRender, tyro.conf.subcommand("render")]
+    | Annotated[MotionsExport, tyro.conf.subcommand("export")]
 )
 
 
@@ -146,7 +173,7 @@ class BagCommand:
 
 @dataclass(frozen=True)
 class MotionsCommand:
-    """Motions: fetch, list."""
+    """Motions: fetch, import, list, stats, tree, split, inspect, render, export."""
 
     command: Annotated[Motions, tyro.conf.arg(name="")]
 

@@ -18,6 +18,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
+            "dataset_node = unicon_schedulers.dataset_node:main",
             "stitching_node = unicon_schedulers.stitching_node:main",
         ]
     },

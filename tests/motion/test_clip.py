@@ -7,9 +7,8 @@ import pytest
 
 from tests.samples import swaying_clip
 from unicon import rotations
-from unicon.errors import InputFileError, UnknownNameError
+from unicon.errors import InputFileError
 from unicon.motion.clip import load_clip, repeat
-from unicon.motion.library import ClipLibrary
 
 
 def test_a_clip_comes_back_from_its_file(tmp_path):
@@ -59,19 +58,3 @@ def test_a_clip_for_another_humanoid_is_refused(tmp_path):
     np.savez(tmp_path / "other.npz", **{**data, "humanoid_id": np.array("another")})
     with pytest.raises(InputFileError, match="another"):
         load_clip(tmp_path / "other.npz")
-
-
-def test_a_library_knows_its_names_and_the_nearest_ones(tmp_path):
-    for name in ("walk", "run"):
-        swaying_clip(name=name).save(tmp_path / f"{name}.npz")
-    library = ClipLibrary(tmp_path)
-    assert library.names == ["run", "walk"]
-    assert library.get("walk").name == "walk"
-    with pytest.raises(UnknownNameError, match="nearest are walk"):
-        library.get("walkk")
-
-
-def test_an_empty_or_missing_folder_is_no_library(tmp_path):
-    for folder in (tmp_path, tmp_path / "none"):
-        with pytest.raises(InputFileError, match="motions fetch"):
-            ClipLibrary(folder)

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from unicon import rotations
 from unicon.errors import InputFileError
 from unicon.motion.deepmimic import read_deepmimic
+from unicon.motion.motion_file import MotionFile
 
 
 def row(duration: float = 0.1, x: float = 0.0, turn: float = 0.0, knee: float = 0.0) -> list[float]:
@@ -22,14 +23,15 @@ def row(duration: float = 0.1, x: float = 0.0, turn: float = 0.0, knee: float = 
     return [duration, x, 0.9, 0.2, *root, *identity, *identity, *right_leg, *arm, *left_leg, *arm]
 
 
-def write(path, frames, loop="none"):
+def write(path, frames, loop="none") -> MotionFile:
     path.write_text(json.dumps({"Loop": loop, "Frames": frames}))
-    return path
+    return MotionFile.from_path(path)
 
 
 def test_axes_are_turned_to_z_up_and_y_left(tmp_path):
     motion = read_deepmimic(write(tmp_path / "humanoid3d_a.txt", [row(x=1.0, turn=0.5), row()], "wrap"))
     assert motion.name == "a"
+    assert motion.family == ""
     assert motion.loop
     assert np.allclose(motion.root_pos[0], [1.0, -0.2, 0.9])
     heading = rotations.heading_angle(motion.local_quat[0, 0])
@@ -65,6 +67,13 @@ def test_rotations_agree_with_scipys_in_its_own_axes(tmp_path):
         ([row(), row()[:43]], "frame 2 has 43 numbers"),
         ([row(), [*row()[:-1], None]], "frame 2 holds something"),
         ([row(0.0), row()], "frame 1 lasts 0"),
+        ([row(), [*row()[:-1], "x"]], "frame 2 holds something"),
+        ([row(), [*row()[:-1], 10**400]], "frame 2 holds something"),
+        (
+            [row(), [*row()[:4], 0.0, 0.0, 0.0, 0.0, *row()[8:]]],
+            "frame 2: the rotation of root has the length 0",
+        ),
+        ([row(), 7], "frame 2 has 0 numbers"),
         ([row()], "2 or more frames"),
     ],
 )
@@ -73,9 +82,17 @@ def test_a_bad_frame_is_named(tmp_path, frames, said):
         read_deepmimic(write(tmp_path / "a.txt", frames))
 
 
+def test_quaternions_that_are_not_quite_unit_ones_are_made_so(tmp_path):
+    frame = row(turn=0.5)
+    frame[4:8] = [1.1 * value for value in frame[4:8]]
+    motion = read_deepmimic(write(tmp_path / "a.txt", [frame, row()]))
+    assert np.isclose(np.linalg.norm(motion.local_quat[0, 0]), 1.0)
+    assert np.isclose(rotations.heading_angle(motion.local_quat[0, 0]), 0.5)
+
+
 @pytest.mark.parametrize("content", [b"", b'{"Frames": [[1, 2', b"\xff\xfe\x00binary", b"[1, 2]"])
 def test_what_is_no_such_file_is_refused_by_name(tmp_path, content):
     path = tmp_path / "broken.txt"
     path.write_bytes(content)
     with pytest.raises(InputFileError, match="broken.txt"):
-        read_deepmimic(path)
+        read_deepmimic(MotionFile.from_path(path))

@@ -47,6 +47,8 @@ def test_motions_are_fetched_once_and_then_there(fake_registry, console, monkeyp
     assert library.names == ["kick", "walk"]
     assert library.get("walk").licence == "zlib"
     assert library.get("walk").duration_s > 3.5
+    assert library.info("walk").label.split("/")[0] == "walking"
+    assert library.info("walk").quality["mean_error_mm"] < 40.0
     assert "zlib" in console.file.getvalue()
     monkeypatch.setattr(module.subprocess, "run", None)
     assert module.fetch(console).names == ["kick", "walk"]
@@ -55,7 +57,8 @@ def test_motions_are_fetched_once_and_then_there(fake_registry, console, monkeyp
 def test_nothing_but_the_clips_is_kept(fake_registry, console, tmp_path):
     module.fetch(console)
     kept = sorted(path.name for path in (tmp_path / "cache").rglob("*") if path.is_file())
-    assert kept == ["about.json", "kick.npz", "walk.npz"]
+    assert [kept[0], kept[2]] == ["about.json", "index.json"]
+    assert kept[1].startswith("frames-") and len(kept) == 3
 
 
 def test_a_file_that_was_changed_is_not_used(fake_registry, console, monkeypatch):

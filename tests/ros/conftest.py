@@ -21,6 +21,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from tests.samples import swaying_clip
+from unicon.motion.library_writer import LibraryWriter
 
 PATIENCE_S = 20.0
 
@@ -110,12 +111,12 @@ def graph(tmp_path: Path) -> Iterator[Graph]:
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A folder with two clips."""
-    folder = tmp_path / "library"
-    folder.mkdir()
-    swaying_clip(120, name="sway").save(folder / "sway.npz")
-    swaying_clip(60, name="bow").save(folder / "bow.npz")
-    return folder
+    """A library of two clips."""
+    with LibraryWriter(tmp_path / "library") as writer:
+        writer.add_clip(swaying_clip(120, name="sway"))
+        writer.add_clip(swaying_clip(60, name="bow"))
+        writer.commit()
+    return writer.folder
 
 
 def end(process: subprocess.Popen, number: int = signal.SIGINT) -> int:

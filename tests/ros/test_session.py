@@ -102,5 +102,5 @@ def test_a_recording_is_started_and_stopped_by_service(graph, tmp_path):
 def test_a_library_that_is_not_there_ends_the_scheduler_with_one_sentence(graph, tmp_path):
     process = graph.start("unicon_schedulers", "stitching_node", library=tmp_path / "none")
     assert process.wait(timeout=20) == 2
-    assert "there is no such folder of clips" in process.output.read_text()
+    assert "there is no such clip library" in process.output.read_text()
     assert "Traceback" not in process.output.read_text()

@@ -8,28 +8,32 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import subprocess
 import sys
 import tempfile
 import zipfile
-from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
 from rich.progress import track
 
+from unicon.cache import CACHE_VARIABLE, cache_folder
 from unicon.errors import UniconError
 from unicon.humanoid import HUMANOID
+from unicon.motion.catalogue import classify, describe, take_of
 from unicon.motion.clip import repeat
+from unicon.motion.clip_index import ClipInfo
 from unicon.motion.deepmimic import read_deepmimic
 from unicon.motion.library import ClipLibrary
+from unicon.motion.library_index import LIBRARY_VERSION
+from unicon.motion.library_writer import LibraryWriter
+from unicon.motion.motion_file import MotionFile
 from unicon.motion.retarget import VERSION, retarget
+from unicon.motion.skeletons import recognise
 
 PACKAGE = "pybullet==3.2.7"
 PLATFORMS = ("manylinux_2_17_x86_64", "manylinux2014_x86_64")
 FOLDER_IN_WHEEL = "pybullet_data/data/motions/"
-CACHE_VARIABLE = "UNICON_CACHE"
 LICENCE = "zlib"
 SOURCE = "DeepMimic motions as in pybullet 3.2.7"
 MIN_LOOP_S = 4.0
@@ -60,16 +64,9 @@ LOOPS = ("crawl", "jump", "run", "walk", "turn_left0", "turn_right0")
 """Clips that go on when they are repeated (others end elsewhere than they begin)."""
 
 
-def cache_folder() -> Path:
-    """Return where fetched motions are kept: $UNICON_CACHE, or ``unicon`` in the user's cache."""
-    chosen = os.environ.get(CACHE_VARIABLE)
-    base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    return Path(chosen) if chosen else base / "unicon"
-
-
 def fetched_folder() -> Path:
-    """Return the folder of the clips that fit this humanoid and retargeter."""
-    return cache_folder() / f"deepmimic-{HUMANOID.id}-v{VERSION}"
+    """Return the folder of the library that fits this humanoid, this retargeter and this program."""
+    return cache_folder() / f"deepmimic-{HUMANOID.id}-v{VERSION}.{LIBRARY_VERSION}"
 
 
 def fetch(console: Console) -> ClipLibrary:
@@ -133,12 +130,18 @@ def _extract(wheel: Path, folder: Path) -> Path:
 
 
 def _make_clips(files: Path, folder: Path, console: Console) -> None:
-    folder.mkdir()
-    for name in track(sorted(FILES), "retargeting", console=console, transient=True):
-        motion = replace(read_deepmimic(files / name), source=SOURCE, licence=LICENCE)
-        clip = retarget(replace(motion, label=motion.name.split("_")[0].rstrip("0123456789")))
-        if clip.name in LOOPS:
-            clip = repeat(clip, max(1, round(MIN_LOOP_S / clip.duration_s)))
-        clip.save(folder / f"{clip.name}.npz")
+    with LibraryWriter(folder) as writer:
+        for name in track(sorted(FILES), "retargeting", console=console, transient=True):
+            clip, quality = retarget(recognise(read_deepmimic(MotionFile.from_path(files / name))))
+            if clip.name in LOOPS:
+                clip = repeat(clip, max(1, round(MIN_LOOP_S / clip.duration_s)))
+            origin = f"{PACKAGE}/{FOLDER_IN_WHEEL}{name}"
+            label, take = classify(describe(origin)), take_of(origin)
+            figures = {figure: round(value, 4) for figure, value in quality.to_dict().items()}
+            info = ClipInfo(
+                clip.name, len(clip), label, take, SOURCE, LICENCE, origin=origin, quality=figures
+            )
+            writer.add(info, clip.frames)
+        writer.commit()
     about = {"source": SOURCE, "licence": LICENCE, "package": PACKAGE, "humanoid": HUMANOID.id}
     (folder / "about.json").write_text(json.dumps(about, indent=2) + "\n")

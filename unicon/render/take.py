@@ -9,6 +9,7 @@ import numpy as np
 
 from unicon.errors import InputFileError
 from unicon.motion.clip import RATE_HZ, Clip, load_clip
+from unicon.motion.library_index import is_library
 from unicon.recording.bag_reading import read_recording
 from unicon.state import CharacterState, stack
 from unicon.target_frames import NS_PER_S
@@ -64,6 +65,10 @@ def load_take(path: Path) -> Take:
     Raises:
         InputFileError: when it is neither.
     """
+    if is_library(path):
+        raise InputFileError(
+            f"{path}: is a clip library; draw a clip of it: `unicon motions render CLIP --library {path}`"
+        )
     if path.is_dir():
         return take_from_bag(path)
     if path.suffix == ".npz":

@@ -7,12 +7,14 @@ the beginning of the clip, going back with its own:
     pose(t) = interpolate(end + t v_end, start - (T - t) v_start, s(t / T)),   s(x) = x^2 (3 - 2x)
 
 The clip's start is set ahead by T (v_end + v_start) / 2, so that the root neither stops nor jumps. When
-nothing is queued, the path goes over into a standing pose and stays there.
+nothing is queued, the path goes on with what the stitcher is told to ask for the next clip; where that has
+none, it goes over into a standing pose and stays there.
 """
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -63,11 +65,20 @@ class _Queued(NamedTuple):
 
 
 class Stitcher:
-    """A first-in, first-out queue of clips as one endless path, from ``start_ns`` on."""
+    """A first-in, first-out queue of clips as one endless path, from ``start_ns`` on.
 
-    def __init__(self, config: StitcherConfig, start_ns: int) -> None:
+    ``next_clip`` is asked for a clip whenever the path ends and nothing waits; None means to stand.
+    """
+
+    def __init__(
+        self,
+        config: StitcherConfig,
+        start_ns: int,
+        next_clip: Callable[[], Clip | None] = lambda: None,
+    ) -> None:
         self.config = config
         self._start_ns = start_ns
+        self._next_clip = next_clip
         self._queue: deque[_Queued] = deque()
         standing = HUMANOID.rest_state()
         self._path = state.stack([standing, standing])
@@ -107,7 +118,7 @@ class Stitcher:
         self._queue.append(_Queued(clip, length_s))
 
     def clear(self) -> None:
-        """Forget what waits, and go over into standing from what was sent already."""
+        """Forget what waits and what was not sent yet; the path goes on from there with what is next."""
         self._queue.clear()
         last = self._sent + self.config.window
         if last < self._stop and self._segments[-1].name:
@@ -131,8 +142,7 @@ class Stitcher:
         return self._first + self._path.batch_shape[0]
 
     def _extend(self) -> None:
-        if self._queue:
-            entry = self._queue.popleft()
+        if entry := self._take_next():
             self._append(entry.clip.frames, entry.transition_s, entry.clip.name)
         elif self._segments[-1].name:
             self._append(_standing_clip().frames, self.config.transition_s, "")
@@ -141,6 +151,12 @@ class Stitcher:
             more = state.stack([state.hold(self._path[-1])] * self.config.window)
             self._path = state.concatenate([self._path, more])
             self._segments[-1] = self._segments[-1]._replace(stop=stop)
+
+    def _take_next(self) -> _Queued | None:
+        if self._queue:
+            return self._queue.popleft()
+        clip = self._next_clip()
+        return None if clip is None else _Queued(clip, self.config.transition_s)
 
     def _append(self, frames: CharacterState, transition_s: float, name: str) -> None:
         count = round(transition_s * RATE_HZ)
