@@ -21,7 +21,7 @@ from unicon.recording.session_report import Spread, report_on, spread, to_table
 from unicon_bringup.graph import GraphConfig
 from unicon_bringup.session import GraphSession
 
-MOTIONS = ("walk", "turn_left0", "kick", "jump", "dance_a", "run", "punch")
+MOTIONS = ("walk", "turn_left", "jump", "wave", "punch", "run", "dance")
 SLEEP_LOOP = Path(__file__).parent / "sleep_loop.py"
 START_S = 4.0
 """What is left out at the beginning: the start of the processes themselves."""

@@ -35,7 +35,7 @@ class Cut(NamedTuple):
 
 
 CUTS = (
-    Cut("stand", "000_genuine", 20.0, 25.0),
+    Cut("stand", "015_genuine", 40.0, 45.0),
     Cut("idle_shift", "012_genuine", 60.0, 68.0),
     Cut("walk", "walk", repeats=4),
     Cut("walk_slow", "cmu_deepmimic_07_05"),
@@ -46,7 +46,7 @@ CUTS = (
     Cut("jump", "13_39"),
     Cut("wave", "Greeting"),
     Cut("punch", "punch"),
-    Cut("kick", "135_04", 0.5, 6.5),
+    Cut("kick", "135_07", 0.0, 5.5),
     Cut("dance", "60_15", 2.0, 10.0),
     Cut("get_up", "getup_faceup"),
 )

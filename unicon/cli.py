@@ -132,7 +132,7 @@ class MotionsRender:
     """Its name in the library, or its file (*.npz)."""
     config: Annotated[RenderConfig, tyro.conf.arg(name="")]
     library: Path | None = None
-    """Library that the name is of; $UNICON_LIBRARY or else the fetched one where it is not given."""
+    """Library that the name is of; $UNICON_LIBRARY or else the shipped one where it is not given."""
 
     def run(self, console: Console) -> int:
         """Draw what was asked for; a video and a contact sheet beside each other where nothing was."""

@@ -24,7 +24,7 @@ class MotionsExport:
     out: Path | None = None
     """BVH file to write; in the present folder, with the motion's name, where it is not given."""
     library: Path | None = None
-    """Library that the name is of; $UNICON_LIBRARY or else the fetched one where it is not given."""
+    """Library that the name is of; $UNICON_LIBRARY or else the shipped one where it is not given."""
     target: bool = False
     """Of a recording, write what the avatar was to do instead of what it did."""
     unit: Literal["cm", "m"] = "cm"
@@ -61,7 +61,7 @@ class MotionsInspect:
     clip: Annotated[str, tyro.conf.Positional]
     """Its name in the library, or its file (*.npz)."""
     library: Path | None = None
-    """Library that the name is of; $UNICON_LIBRARY or else the fetched one where it is not given."""
+    """Library that the name is of; $UNICON_LIBRARY or else the shipped one where it is not given."""
     plots: Path | None = None
     """PNG to write; out/inspect/CLIP.png where it is not given."""
 

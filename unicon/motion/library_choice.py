@@ -9,15 +9,22 @@ from rich.console import Console
 
 from unicon.motion.fetch import fetch
 from unicon.motion.library import ClipLibrary
+from unicon.motion.library_index import is_library
 
 LIBRARY_VARIABLE = "UNICON_LIBRARY"
+SHIPPED = Path(__file__).parents[2] / "motions"
+"""The small library beside the code; absent where only the library was installed."""
 
 
 def open_library(folder: Path | None, console: Console) -> ClipLibrary:
-    """Return the library of a folder; without one that of $UNICON_LIBRARY, else the fetched one.
+    """Return the library of a folder; without one that of $UNICON_LIBRARY, else the shipped one.
+
+    Where the shipped one is absent, the motions that a package registry holds are fetched.
 
     Raises:
         UniconError: when it cannot be opened or fetched.
     """
     chosen = folder or os.environ.get(LIBRARY_VARIABLE)
+    if not chosen and is_library(SHIPPED):
+        chosen = SHIPPED
     return ClipLibrary(Path(chosen)) if chosen else fetch(console)

@@ -39,7 +39,7 @@ class MotionsList:
     """List the clips of a library."""
 
     library: Library = None
-    """Folder of the library; $UNICON_LIBRARY or else the fetched one where it is not given."""
+    """Folder of the library; $UNICON_LIBRARY or else the shipped one where it is not given."""
     name: str = ""
     """Only clips whose names contain this."""
     label: str = ""
@@ -77,7 +77,7 @@ class MotionsStats:
     """Say how large and how good a library is, and how large the paper's sub-datasets are in it."""
 
     library: Library = None
-    """Folder of the library; $UNICON_LIBRARY or else the fetched one where it is not given."""
+    """Folder of the library; $UNICON_LIBRARY or else the shipped one where it is not given."""
     json: Path | None = None
     """File to write the figures to as well."""
 
@@ -95,7 +95,7 @@ class MotionsTree:
     """Show the tree of classes with the clips and seconds of each."""
 
     library: Library = None
-    """Folder of the library; $UNICON_LIBRARY or else the fetched one where it is not given."""
+    """Folder of the library; $UNICON_LIBRARY or else the shipped one where it is not given."""
 
     def run(self, console: Console) -> int:
         """Print the tree."""
@@ -112,7 +112,7 @@ class MotionsSplit:
     """Divide a library into training and test clips, class by class; all copies of a take on one side."""
 
     library: Library = None
-    """Folder of the library; $UNICON_LIBRARY or else the fetched one where it is not given."""
+    """Folder of the library; $UNICON_LIBRARY or else the shipped one where it is not given."""
     settings: Annotated[SplitSettings, tyro.conf.arg(name="")] = field(default_factory=SplitSettings)
     file: Path | None = None
     """Where to write the split; split.yaml in the library's folder where it is not given."""

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from unicon.errors import UniconError
-from unicon.motion.fetch import LICENCE, SOURCE, fetch
+from unicon.motion.library_choice import open_library
 from unicon.recording.session_report import report_on, to_table
 from unicon.render.gl import NoGLError
 from unicon.render.scene import Picture
@@ -34,7 +34,7 @@ SHEET_PICTURE = Picture(480, 360)
 class DemoConfig:
     """What the demo plays, and where it leaves its results."""
 
-    motions: tuple[str, ...] = ("walk", "turn_left0", "kick", "jump", "dance_a", "run", "punch")
+    motions: tuple[str, ...] = ("walk", "turn_left", "jump", "wave", "punch", "run", "dance")
     """Motions to play, one after the other."""
     seconds: float = 20.0
     """How long the avatar lives."""
@@ -64,13 +64,14 @@ def run_demo(config: DemoConfig, console: Console) -> None:
     """Play, record, draw and measure.
 
     Raises:
-        UniconError: when the motions cannot be fetched or the graph does not come up.
+        UniconError: when a motion is not there or the graph does not come up.
     """
     bag = config.out / "session"
     shutil.rmtree(config.out, ignore_errors=True)
     config.out.mkdir(parents=True)
-    fetch(console)
-    console.print(f"motions: {SOURCE}, {LICENCE} licence")
+    library = open_library(None, console)
+    licences = sorted({library.info(motion).licence for motion in config.motions})
+    console.print(f"motions: {library.folder} (licences: {', '.join(licences)})")
     play(config, bag, console)
     report = report_on(bag)
     (config.out / "report.json").write_text(json.dumps(report.to_dict(), indent=2) + "\n")

@@ -24,7 +24,7 @@ from unicon_ros.qos import LATCHED, STREAM
 STATUS_PERIOD_S = 1.0
 
 LIBRARY = Parameter(
-    "library", "", "folder of a clip library; empty for that of $UNICON_LIBRARY, or else the fetched one"
+    "library", "", "folder of a clip library; empty for that of $UNICON_LIBRARY, or else the shipped one"
 )
 WINDOW = Parameter("window", 8, "frames in each message", "frames", 1, 64)
 
