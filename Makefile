@@ -4,9 +4,10 @@ SHELL := bash
 PYTHON ?= python3
 PYTEST_ARGS ?=
 DEMO_ARGS ?=
+BENCH_ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check format doctor bench-graph clean
+.PHONY: help setup demo test check format doctor bench-graph bench-motions clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -38,6 +39,10 @@ doctor: setup ## look whether this machine has what it takes
 
 bench-graph: setup ## run the graph for 60 s and write out/bench/graph.json
 	@tools/run python benchmarks/graph.py
+
+bench-motions: ## the motion library beside mink, bvhio and upc-pymotion: out/bench/motions_speed.json
+	@$(PYTHON) tools/setup.py base ros dev bench
+	@OMP_NUM_THREADS=1 tools/run python benchmarks/motions.py $(if $(MOTIONS),--motions $(MOTIONS)) $(BENCH_ARGS)
 
 clean: ## remove everything that set-up and runs made
 	rm -rf .venv out ros_ws/build ros_ws/install ros_ws/log

@@ -27,8 +27,9 @@ PEERS = ("bvhio", "upc_pymotion")
 
 def measure_readers(files: Sequence[MotionFile], turns: int) -> dict[str, float]:
     """Return frames a second of each reader, and how far our joints are from theirs at most [mm]."""
-    frames, seconds = 0, dict.fromkeys(("ours", *PEERS), 0.0)
-    distances = dict.fromkeys(PEERS, 0.0)
+    frames = 0
+    seconds: dict[str, float] = dict.fromkeys(("ours", *PEERS), 0.0)
+    distances: dict[str, float] = dict.fromkeys(PEERS, 0.0)
     for file in files:
         path = str(file.path)
         works = {
@@ -45,7 +46,7 @@ def measure_readers(files: Sequence[MotionFile], turns: int) -> dict[str, float]
             "upc_pymotion": _distance_to_pymotion(motion, path),
         }
         distances = {name: max(distances[name], found[name]) for name in PEERS}
-    figures = {"files": float(len(files)), "frames": float(frames)}
+    figures: dict[str, float] = {"files": len(files), "frames": frames}
     figures |= {f"{name}_frames_per_s": frames / value for name, value in seconds.items()}
     figures |= {f"times_{name}": seconds[name] / seconds["ours"] for name in PEERS}
     return figures | {f"largest_difference_to_{name}_mm": distances[name] for name in PEERS}

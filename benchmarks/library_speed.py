@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from timing import median_seconds
+from timing import Seconds, median_seconds
 
 from unicon.humanoid import HUMANOID
 from unicon.motion.balancer import MotionBalancer
@@ -42,17 +42,19 @@ def measure_library(config: LibraryConfig) -> dict[str, float]:
 
     The library has just been written, so the system still has its file in memory.
     """
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
         make_library(config, folder)
         library = ClipLibrary(folder)
-        figures = {
-            "clips": float(len(library)),
-            "frames": float(len(library.array)),
-            "open_s": median_seconds(lambda: ClipLibrary(folder), config.open_turns),
+        figures: dict[str, float] = {
+            "clips": len(library),
+            "frames": len(library.array),
         }
+        opening = median_seconds(lambda: ClipLibrary(folder), config.open_turns)
+        figures |= {"open_s": opening.clock, "open_core_s": opening.core}
         for tau in config.taus:
-            figures[f"sample_{config.batch}_tau_{tau}_ms"] = 1000 * _sampling_s(library, tau, config)
+            name, seconds = f"sample_{config.batch}_tau_{tau}", time_sampling(library, tau, config)
+            figures |= {f"{name}_ms": 1000 * seconds.clock, f"{name}_core_ms": 1000 * seconds.core}
     return figures
 
 
@@ -67,6 +69,16 @@ def make_library(config: LibraryConfig, folder: Path) -> None:
         writer.commit()
 
 
+def time_sampling(library: ClipLibrary, tau: int, config: LibraryConfig) -> Seconds:
+    """Return the median times of one batch: start states of the humanoid and ``tau`` targets each."""
+    probabilities = MotionBalancer(library.infos).probabilities
+    sampler = FrameSampler(library, probabilities=probabilities, offsets=range(tau + 1))
+    rng = np.random.default_rng(1)
+    batch = sampler.sample(config.batch, rng)
+    assert batch.states.joint_pos.shape == (config.batch, tau + 1, len(HUMANOID.joint_names))
+    return median_seconds(lambda: sampler.sample(config.batch, rng), config.sample_turns)
+
+
 def _info(number: int, rng: np.random.Generator) -> ClipInfo:
     return ClipInfo(
         name=f"take_{number:05d}",
@@ -79,13 +91,3 @@ def _info(number: int, rng: np.random.Generator) -> ClipInfo:
         split="train",
         quality={field.name: float(rng.random()) for field in fields(ClipQuality)},
     )
-
-
-def _sampling_s(library: ClipLibrary, tau: int, config: LibraryConfig) -> float:
-    """Return the median time of one batch [s]: start states of the humanoid and ``tau`` targets each."""
-    probabilities = MotionBalancer(library.infos).probabilities
-    sampler = FrameSampler(library, probabilities=probabilities, offsets=range(tau + 1))
-    rng = np.random.default_rng(1)
-    batch = sampler.sample(config.batch, rng)
-    assert batch.states.joint_pos.shape == (config.batch, tau + 1, len(HUMANOID.joint_names))
-    return median_seconds(lambda: sampler.sample(config.batch, rng), config.sample_turns)

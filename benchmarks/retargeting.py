@@ -44,6 +44,7 @@ class Tally:
         return {
             "frames_per_s": frames / self.seconds,
             "mean_error_mm": float(errors_mm.mean()),
+            "p99_error_mm": float(np.percentile(errors_mm, 99)),
             "worst_error_mm": float(errors_mm.max()),
             "worst_hinge_velocity_rad_per_s": self.worst_hinge_vel,
         }
@@ -74,8 +75,8 @@ def measure_retargeting(
         theirs.add(seconds["mink"], results[0].frames, fitted)
     with_ground = {"with_ground_frames_per_s": frames / (ours.seconds + ground_s)}
     return {
-        "motions": float(len(motions)),
-        "frames": float(frames),
+        "motions": len(motions),
+        "frames": frames,
         "ours": ours.figures(frames) | with_ground,
         "mink": theirs.figures(frames) | {"steps_per_frame": steps / frames},
         "times_mink": theirs.seconds / ours.seconds,

@@ -4,26 +4,31 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 
-def median_seconds(work: Callable[[], Any], turns: int) -> float:
-    """Return the median time of some work [s], by the clock."""
+class Seconds(NamedTuple):
+    """How long some work takes [s]."""
+
+    clock: float
+    core: float
+    """Processor time: what the clock would say if nothing else ran."""
+
+
+def median_seconds(work: Callable[[], Any], turns: int) -> Seconds:
+    """Return the median times of some work on one thread."""
     seconds = []
     for _ in range(turns):
-        began = time.perf_counter()
+        began, core_began = time.perf_counter(), time.process_time()
         work()
-        seconds.append(time.perf_counter() - began)
-    return float(np.median(seconds))
+        seconds.append((time.perf_counter() - began, time.process_time() - core_began))
+    return Seconds(*np.median(seconds, axis=0).tolist())
 
 
 def median_core_seconds(works: Mapping[str, Callable[[], Any]], turns: int) -> dict[str, float]:
-    """Return the median processor time of each work [s]; they take turns.
-
-    On one thread this is the time that the work takes on a core of its own.
-    """
+    """Return the median processor time of each work [s] on one thread; they take turns."""
     seconds: dict[str, list[float]] = {name: [] for name in works}
     for _ in range(turns):
         for name, work in works.items():

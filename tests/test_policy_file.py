@@ -10,9 +10,11 @@ import pytest
 from safetensors.numpy import load_file, save_file
 
 from tests.samples import standing
-from unicon.errors import InputFileError, UnknownNameError
+from unicon.control import ServoControl
+from unicon.errors import InputFileError, UniconError, UnknownNameError
 from unicon.humanoid import HUMANOID
-from unicon.observation import OBSERVATION_ID, policy_input, policy_input_size
+from unicon.humanoid.kinematics import forward_kinematics
+from unicon.observation import OBSERVATION_ID, observe, policy_input, policy_input_size
 from unicon.policy import NetworkPolicy, PolicyContext, ReferenceServo
 from unicon.policy_file import (
     CARD_FILE,
@@ -140,6 +142,11 @@ def test_weights_that_were_changed_fail_the_self_check(folder):
         ({"activation": "gelu"}, "'activation' is 'gelu'"),
         ({"format": 2}, "'format' is 2"),
         ({"surprise": 1}, "unknown field 'surprise'"),
+        ({"control_hz": 30}, "'control_hz' is 30"),
+        ({"future": [2]}, "'future' is .2., expected 2 whole numbers"),
+        ({"future": [1, 900]}, "'future' is"),
+        ({"future": [1, "2"]}, "'future' holds something that is not a number"),
+        ({"past": 9}, "'past' is 9"),
     ],
 )
 def test_a_card_with_a_bad_field_names_it(folder, values, said):
@@ -172,3 +179,59 @@ def test_the_reference_servo_aims_at_the_next_target_and_is_untrained():
     control = ReferenceServo().act(PolicyContext(standing(), stack([target])))
     assert np.array_equal(control.joint_pos, target.joint_pos)
     assert not ReferenceServo().trained
+
+
+def test_a_card_of_before_has_its_defaults(folder):
+    card = json.loads((folder / CARD_FILE).read_text())
+    for name in ("future", "past", "training", "scores", "network"):
+        del card[name]
+    (folder / CARD_FILE).write_text(json.dumps(card))
+    read, _ = read_policy(folder)
+    assert (read.frames_ahead, read.past, dict(read.scores)) == ((1, 2), 0, {})
+
+
+def test_with_pd_the_outputs_offset_the_servo_by_their_torque():
+    target = dataclasses.replace(standing(), joint_pos=np.full(35, 0.1), joint_vel=np.full(35, 0.2))
+    context = PolicyContext(standing(), stack([target, target]))
+    offset = HUMANOID.effort * make_weights().evaluate(policy_input(*context[:2]), "relu")
+    control = NetworkPolicy(make_card(action="pd"), make_weights()).act(context)
+    assert isinstance(control, ServoControl)
+    assert np.allclose(HUMANOID.stiffness * (control.joint_pos - 0.1), offset)
+    assert np.array_equal(control.joint_vel, target.joint_vel)
+
+
+def test_a_policy_looks_at_the_frames_that_its_card_names():
+    frames = stack([standing(0.1 * k) for k in range(1, 5)])
+    card = make_card(tau=2, future=(2, 4), action="torque-servo")
+    policy = NetworkPolicy(card, make_weights())
+    seen = policy.observe(PolicyContext(standing(), frames))
+    assert policy.tau == 4
+    assert np.array_equal(seen, policy_input(standing(), stack([standing(0.2), standing(0.4)])))
+
+
+def test_past_states_follow_the_targets_and_have_to_be_there():
+    policy = NetworkPolicy(make_card(past=1), make_weights())
+    targets, before = stack([standing(0.1), standing(0.2)]), standing(-0.1)
+    seen = policy.observe(PolicyContext(standing(), targets, past=stack([before])))
+    assert policy.for_comparison_only
+    assert np.array_equal(seen[-197:], observe(before, forward_kinematics(before)))
+    with pytest.raises(UniconError, match="past states"):
+        policy.observe(PolicyContext(standing(), targets))
+
+
+def test_the_present_target_may_be_among_the_frames():
+    policy = NetworkPolicy(make_card(tau=2, future=(0, 2)), make_weights())
+    targets = stack([standing(0.1), standing(0.2)])
+    seen = policy.observe(PolicyContext(standing(), targets, present=standing(0.05)))
+    assert np.array_equal(seen, policy_input(standing(), stack([standing(0.05), standing(0.2)])))
+    with pytest.raises(UniconError, match="present target"):
+        policy.observe(PolicyContext(standing(), targets))
+
+
+def test_many_avatars_at_once_get_what_each_gets_alone_to_the_bit():
+    policy = NetworkPolicy(make_card(action="torque-servo", activation="silu"), make_weights())
+    actual = stack([standing(0.01 * k) for k in range(7)])
+    targets = stack([stack([standing(0.1 * k), standing(0.2 * k)]) for k in range(7)])
+    together = policy.act(PolicyContext(actual, targets)).torque
+    alone = [policy.act(PolicyContext(actual[k], targets[k])).torque for k in range(7)]
+    assert np.array_equal(together, np.stack(alone))

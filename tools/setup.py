@@ -1,6 +1,6 @@
 """Makes this checkout ready: .venv with pinned packages, the library, and the built ROS workspace.
 
-usage: python3 tools/setup.py [group ...]        groups: base ros train dev (default: base ros)
+usage: python3 tools/setup.py [group ...]        groups: base ros train dev bench (default: base ros)
 
 Each step is stamped with a hash of what it depends on and is left out while that stays the same, so
 a second call takes a second. An interrupted step has no stamp and is done again. Standard library
@@ -25,7 +25,7 @@ STAMPS = VENV / ".unicon-stamps"
 WORKSPACE = ROOT / "ros_ws"
 KERNEL = ROOT / "unicon" / "train" / "batch_simulator"
 LOG = VENV / "setup.log"
-GROUPS = ("base", "ros", "train", "dev")
+GROUPS = ("base", "ros", "train", "dev", "bench")
 PYTHONS = ((3, 12), (3, 11), (3, 13))
 # The real program: inside an activated .venv, sys.executable is a link that a new .venv takes away.
 PYTHON = os.path.realpath(getattr(sys, "_base_executable", None) or sys.executable)

@@ -14,6 +14,8 @@ from unicon.errors import UniconError
 from unicon.motion.motion_commands import MotionsImport, MotionsList, MotionsSplit, MotionsStats, MotionsTree
 from unicon.render.show import RenderConfig
 from unicon.tool_commands import FetchCmu, MotionsExport, MotionsInspect, find_clip
+from unicon.train.evaluation_commands import Evaluate, Robustness
+from unicon.train.train_commands import Export, Train
 
 if TYPE_CHECKING:
     from unicon.render.take import Take
@@ -187,6 +189,10 @@ Command = (
     | Annotated[Render, tyro.conf.subcommand("render")]
     | Annotated[BagCommand, tyro.conf.subcommand("bag")]
     | Annotated[MotionsCommand, tyro.conf.subcommand("motions")]
+    | Annotated[Train, tyro.conf.subcommand("train")]
+    | Annotated[Export, tyro.conf.subcommand("export")]
+    | Annotated[Evaluate, tyro.conf.subcommand("evaluate")]
+    | Annotated[Robustness, tyro.conf.subcommand("robustness")]
 )
 
 

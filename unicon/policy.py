@@ -7,8 +7,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from unicon.control import Control, ServoControl, TorqueControl
+from unicon.errors import UniconError
 from unicon.humanoid import HUMANOID
-from unicon.observation import policy_input
+from unicon.humanoid.kinematics import forward_kinematics
+from unicon.observation import observe, policy_input
 from unicon.policy_file import PolicyCard, PolicyWeights
 from unicon.state import CharacterState
 
@@ -16,12 +18,16 @@ REFERENCE_SERVO = "reference_servo"
 
 
 class PolicyContext(NamedTuple):
-    """What a policy may look at."""
+    """What a policy may look at: one avatar, or many with the batch shape (...)."""
 
     actual: CharacterState
-    """The avatar's state at the beginning of the tick."""
+    """The avatar's state at the beginning of the tick ``(...)``."""
     targets: CharacterState
-    """The next targets, batch ``(tau,)``: one tick later, two ticks later, ..."""
+    """The next targets ``(..., tau)``: one tick later, two ticks later, ..."""
+    present: CharacterState | None = None
+    """The target of the beginning of the tick ``(...)``; only baselines look at it."""
+    past: CharacterState | None = None
+    """The avatar's states one tick ago, two ticks ago ... ``(..., k)``; only baselines look at them."""
 
 
 class Policy(Protocol):
@@ -39,7 +45,7 @@ class Policy(Protocol):
 
     @property
     def tau(self) -> int:
-        """How many target frames it looks at, 1 to 8."""
+        """How many ticks ahead it has to know the targets; it need not look at all of them."""
         ...
 
     def act(self, context: PolicyContext) -> Control:
@@ -59,15 +65,22 @@ class ReferenceServo:
 
     def act(self, context: PolicyContext) -> ServoControl:
         """Aim at the next target."""
-        target = context.targets[0]
+        target = context.targets[..., 0, :]
         return ServoControl(target.joint_pos, target.joint_vel)
 
 
 class NetworkPolicy:
-    """A trained network: torque = effort * (network(s_t) + servo prior), held over the tick.
+    """A trained network: a multi-layer perceptron on the normalised s_t.
 
-    The network is a multi-layer perceptron on the normalised s_t. With the action "torque-servo" a fixed
-    servo on the first target, linear in s_t, is added: stiffness (q_1 - q) + damping dq_1.
+    Its outputs a are shares of the largest torques (effort). With q, dq the avatar's hinges and q*, dq*
+    those of the nearest target frame that it looks at:
+
+        torque        torque = effort a, held over the tick
+        torque-servo  torque = effort a + stiffness (q* - q) + damping dq*, held over the tick
+        pd            the same formula in every physics step, with a, q* and dq* held over the tick
+
+    All are cut off at the effort factors. What it computes for an avatar does not depend on the others of
+    a batch, to the bit.
     """
 
     trained = True
@@ -75,6 +88,7 @@ class NetworkPolicy:
     def __init__(self, card: PolicyCard, weights: PolicyWeights) -> None:
         self.card = card
         self._weights = weights
+        self._aim = min((ticks for ticks in card.frames_ahead if ticks > 0), default=1)
 
     @property
     def name(self) -> str:
@@ -83,15 +97,63 @@ class NetworkPolicy:
 
     @property
     def tau(self) -> int:
-        """The card's number of target frames."""
-        return self.card.tau
+        """How many ticks ahead the last target frame lies that it looks at."""
+        return max(1, *self.card.frames_ahead)
 
-    def act(self, context: PolicyContext) -> TorqueControl:
-        """Run the network on s_t."""
-        seen = policy_input(context.actual, context.targets)
-        torque = HUMANOID.effort * self._weights.evaluate(seen, self.card.activation)
+    @property
+    def weights(self) -> PolicyWeights:
+        """The network's numbers."""
+        return self._weights
+
+    @property
+    def for_comparison_only(self) -> bool:
+        """Whether it needs what the executor does not give: the present target or past states."""
+        return 0 in self.card.frames_ahead or self.card.past > 0
+
+    def act(self, context: PolicyContext) -> Control:
+        """Run the network on s_t.
+
+        Raises:
+            UniconError: when it needs more than the context has.
+        """
+        offset = HUMANOID.effort * self._weights.evaluate(self.observe(context), self.card.activation)
+        target = context.targets[..., self._aim - 1, :]
+        if self.card.action == "pd":
+            # stiffness (q* + offset / stiffness - q) = stiffness (q* - q) + offset
+            return ServoControl(target.joint_pos + offset / HUMANOID.stiffness, target.joint_vel)
+        torque = offset
         if self.card.action == "torque-servo":
-            target = context.targets[0]
             torque = torque + HUMANOID.stiffness * (target.joint_pos - context.actual.joint_pos)
             torque = torque + HUMANOID.damping * target.joint_vel
         return TorqueControl(np.clip(torque, -HUMANOID.effort, HUMANOID.effort))
+
+    def observe(self, context: PolicyContext) -> np.ndarray:
+        """Return the network's input ``(..., in)``: s_t, then o(X~) of past states, the latest first.
+
+        Raises:
+            UniconError: when it needs more than the context has.
+        """
+        seen = policy_input(context.actual, self._look_ahead(context))
+        if not self.card.past:
+            return seen
+        if context.past is None:
+            raise UniconError(f"the policy {self.name} looks at past states, which are not known here")
+        past = context.past[..., : self.card.past, :]
+        own = observe(past, forward_kinematics(past))
+        return np.concatenate([seen, own.reshape(*own.shape[:-2], -1)], axis=-1)
+
+    def _look_ahead(self, context: PolicyContext) -> CharacterState:
+        """Return the target frames that it looks at ``(..., tau)``."""
+        ahead = self.card.frames_ahead
+        if ahead == tuple(range(1, len(ahead) + 1)):
+            return context.targets[..., : len(ahead), :]
+        if 0 not in ahead:
+            return context.targets[..., [ticks - 1 for ticks in ahead], :]
+        if context.present is None:
+            raise UniconError(f"the policy {self.name} looks at the present target, which is not known here")
+        present = vars(context.present[..., None, :])
+        joined = {
+            name: np.concatenate([present[name], value], axis=-2)
+            for name, value in vars(context.targets).items()
+        }
+        return CharacterState(**joined)[..., list(ahead), :]

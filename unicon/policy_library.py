@@ -8,7 +8,7 @@ from pathlib import Path
 
 from unicon.errors import UnknownNameError
 from unicon.policy import REFERENCE_SERVO, NetworkPolicy, Policy, ReferenceServo
-from unicon.policy_file import CARD_FILE, read_policy
+from unicon.policy_file import CARD_FILE, PolicyMismatchError, read_policy
 
 POLICIES_VARIABLE = "UNICON_POLICIES"
 
@@ -27,8 +27,12 @@ def policy_names() -> list[str]:
     ]
 
 
-def load_policy(name: str) -> Policy:
+def load_policy(name: str, comparing: bool = False) -> Policy:
     """Return a policy by its name, or by a folder that holds one.
+
+    Args:
+        name: of the policy, or its folder.
+        comparing: take one that only an evaluation can run, too.
 
     Raises:
         UnknownNameError: when there is none; the message lists the nearest.
@@ -41,4 +45,10 @@ def load_policy(name: str) -> Policy:
         names = policy_names()
         near = difflib.get_close_matches(name, names, n=3, cutoff=0.3) or names
         raise UnknownNameError(f"there is no policy {name!r}; there are {', '.join(near)}")
-    return NetworkPolicy(*read_policy(folder))
+    policy = NetworkPolicy(*read_policy(folder))
+    if policy.for_comparison_only and not comparing:
+        raise PolicyMismatchError(
+            f"{folder}: looks at the present target or past states, which the executor does not give; it is "
+            "for `unicon evaluate`"
+        )
+    return policy

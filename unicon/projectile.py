@@ -91,3 +91,47 @@ def aim(projectile: Projectile, avatar: CharacterState) -> Launch:
     flight_s = np.linalg.norm(path_w) / projectile.speed_m_s
     drop_w = np.array([0.0, 0.0, 0.5 * GRAVITY_M_S2 * flight_s])
     return Launch(start_w, path_w / flight_s + drop_w)
+
+
+@dataclass(frozen=True)
+class Barrage:
+    """Balls thrown one after the other at bodies drawn evenly, from directions drawn evenly.
+
+    A ball of 0.5 kg at 10 m/s brings 5 N s, which changes the speed of the avatar's 70 kg by 7 cm/s: one in
+    80 ticks is a nudge, one in every tick a storm of 300 N from all sides.
+    """
+
+    every_ticks: int
+    """How many ticks of 1/60 s lie between two throws; the first comes after as many."""
+    mass_kg: float = 0.5
+    radius_m: float = 0.08
+    speed_m_s: float = 10.0
+    distance_m: float = 1.0
+    """How far from the body a ball starts."""
+    max_elevation_rad: float = np.pi / 6
+    """They come from between the horizon and so far above it."""
+    lifetime_s: float = 0.2
+    """How long a ball stays: twice the time of its flight."""
+
+    def __post_init__(self) -> None:
+        """Raise UniconError: when a number is out of its range."""
+        if self.every_ticks < 1 or self.lifetime_s <= 0:
+            raise UniconError(f"a barrage throws every {self.every_ticks} ticks, expected 1 or more")
+        self.draw(np.random.default_rng(0))
+
+    @property
+    def balls(self) -> int:
+        """How many balls are in the air at most."""
+        return int(np.ceil((self.lifetime_s * 60 + 1) / self.every_ticks)) + 1
+
+    def draw(self, rng: np.random.Generator) -> Projectile:
+        """Return the next throw."""
+        return Projectile(
+            mass_kg=self.mass_kg,
+            radius_m=self.radius_m,
+            speed_m_s=self.speed_m_s,
+            body=HUMANOID.body_names[rng.integers(len(HUMANOID.body_names))],
+            azimuth_rad=rng.uniform(-np.pi, np.pi),
+            elevation_rad=rng.uniform(0.0, self.max_elevation_rad),
+            distance_m=self.distance_m,
+        )
