@@ -22,9 +22,9 @@ from mujoco import rollout
 from unicon.control import ServoControl
 from unicon.humanoid import HUMANOID
 from unicon.humanoid.mjcf import MOTOR_GROUP, compile_model
-from unicon.train.batch_simulator.build import processor
-from unicon.train.batch_simulator.kernel import load_kernel
-from unicon.train.batch_simulator.simulator import BatchSimulator, BatchSimulatorConfig
+from unicon.train.environment.batch_simulator.build import processor
+from unicon.train.environment.batch_simulator.kernel import load_kernel
+from unicon.train.environment.batch_simulator.simulator import BatchSimulator, BatchSimulatorConfig
 
 SCENES = {"standing": 0.03, "fallen": 0.4}
 """Spread of the servos' aims [rad]."""

@@ -13,9 +13,9 @@ from pymotion.io.bvh import BVH
 from pymotion.ops.skeleton import fk
 from timing import median_core_seconds
 
-from unicon.motion.bvh import read_bvh
-from unicon.motion.motion_file import MotionFile
-from unicon.motion.skeletons import recognise
+from unicon.motion.formats.bvh import read_bvh
+from unicon.motion.formats.motion_file import MotionFile
+from unicon.motion.retargeting.skeletons import recognise
 from unicon.motion.source_motion import SourceMotion
 
 TO_Z_UP = [2, 0, 1]

@@ -10,13 +10,13 @@ import numpy as np
 from timing import Seconds, median_seconds
 
 from unicon.humanoid import HUMANOID
-from unicon.motion.balancer import MotionBalancer
+from unicon.motion.catalogue.balancer import MotionBalancer
 from unicon.motion.clip_index import ClipInfo
-from unicon.motion.frame_sampler import FrameSampler
-from unicon.motion.library import ClipLibrary
-from unicon.motion.library_index import WIDTH
-from unicon.motion.library_writer import LibraryWriter
-from unicon.motion.quality import ClipQuality
+from unicon.motion.grounding.quality import ClipQuality
+from unicon.motion.store.frame_sampler import FrameSampler
+from unicon.motion.store.library import ClipLibrary
+from unicon.motion.store.library_index import WIDTH
+from unicon.motion.store.library_writer import LibraryWriter
 
 LABELS = tuple(f"class_{i % 12:02d}/kind_{i:02d}" for i in range(60))
 """Classes of the made-up clips, in two levels."""

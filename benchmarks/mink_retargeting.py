@@ -19,9 +19,9 @@ from unicon import rotations
 from unicon.humanoid import HUMANOID
 from unicon.humanoid.mjcf import compile_model
 from unicon.motion.clip_index import RATE_HZ
-from unicon.motion.frames import frame, unit
-from unicon.motion.limbs import LIMBS
-from unicon.motion.scaled_source import ScaledSource
+from unicon.motion.retargeting.frames import frame, unit
+from unicon.motion.retargeting.limbs import LIMBS
+from unicon.motion.retargeting.scaled_source import ScaledSource
 from unicon.state import CharacterState, differentiate
 
 SOLVER = "daqp"

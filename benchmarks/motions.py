@@ -29,13 +29,13 @@ from rich.progress import Progress
 from rich.table import Table
 
 from unicon.errors import InputFileError, UniconError
-from unicon.motion.bvh import read_bvh
-from unicon.motion.bvh_export import write_bvh
 from unicon.motion.clip_index import RATE_HZ
-from unicon.motion.library_choice import open_library
-from unicon.motion.motion_file import MotionFile, find_motion_files
-from unicon.motion.skeletons import recognise
+from unicon.motion.formats.bvh import read_bvh
+from unicon.motion.formats.bvh_export import write_bvh
+from unicon.motion.formats.motion_file import MotionFile, find_motion_files
+from unicon.motion.retargeting.skeletons import recognise
 from unicon.motion.source_motion import SourceMotion
+from unicon.motion.store.library_choice import open_library
 
 EDGE_SHARE = 0.05
 """Part of a file at either end that is left out: some begin or end with a T-pose."""

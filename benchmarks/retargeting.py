@@ -14,11 +14,11 @@ from mink_retargeting import MinkConfig, MinkResult, MinkRetargeter, body_target
 from timing import median_core_seconds
 
 from unicon.humanoid.kinematics import forward_kinematics
-from unicon.motion.ground import ground
-from unicon.motion.pose_fitting import FittedPoses, fit_poses
-from unicon.motion.quality import body_errors
-from unicon.motion.scaled_source import scale_source
-from unicon.motion.skeletons import recognise
+from unicon.motion.grounding.ground import ground
+from unicon.motion.grounding.quality import body_errors
+from unicon.motion.retargeting.pose_fitting import FittedPoses, fit_poses
+from unicon.motion.retargeting.scaled_source import scale_source
+from unicon.motion.retargeting.skeletons import recognise
 from unicon.motion.source_motion import SourceMotion
 from unicon.state import CharacterState
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tests.motion.test_download import site  # noqa: F401 - a fixture
+from tests.motion.fetching.test_download import site  # noqa: F401 - a fixture
 from tests.recording.bags import record_session
 from tests.samples import swaying_clip
 from unicon.errors import InputFileError, UniconError, UnknownNameError
-from unicon.motion.bvh import read_bvh
-from unicon.motion.library_writer import LibraryWriter
-from unicon.motion.motion_file import MotionFile
+from unicon.motion.formats.bvh import read_bvh
+from unicon.motion.formats.motion_file import MotionFile
+from unicon.motion.store.library_writer import LibraryWriter
 from unicon.recording.bag_reading import read_recording
 from unicon.tool_commands import FetchCmu, MotionsExport, MotionsInspect
 

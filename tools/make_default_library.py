@@ -16,8 +16,8 @@ from typing import NamedTuple
 from unicon.errors import UniconError
 from unicon.motion.catalogue import provenance_of
 from unicon.motion.clip import RATE_HZ, Clip, clip_from_poses, repeat
-from unicon.motion.library import ClipLibrary
-from unicon.motion.library_writer import LibraryWriter
+from unicon.motion.store.library import ClipLibrary
+from unicon.motion.store.library_writer import LibraryWriter
 
 ROOT = Path(__file__).resolve().parents[1]
 

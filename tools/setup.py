@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
 STAMPS = VENV / ".unicon-stamps"
 WORKSPACE = ROOT / "ros_ws"
-KERNEL = ROOT / "unicon" / "train" / "batch_simulator"
+KERNEL = ROOT / "unicon" / "train" / "environment" / "batch_simulator"
 LOG = VENV / "setup.log"
 GROUPS = ("base", "ros", "train", "dev", "bench")
 PYTHONS = ((3, 12), (3, 11), (3, 13))
@@ -261,7 +261,7 @@ def build_workspace():
 
 def compile_kernel():
     """Compile the trainer's simulator; return what to say where it cannot be: training goes on without."""
-    command = [str(VENV / "bin" / "python"), "-m", "unicon.train.batch_simulator.build"]
+    command = [str(VENV / "bin" / "python"), "-m", "unicon.train.environment.batch_simulator.build"]
     return "" if succeeds(command) else "it could not be compiled; training uses MuJoCo instead, slowly"
 
 

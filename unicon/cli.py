@@ -106,7 +106,7 @@ class FetchFree:
 
     def run(self, console: Console) -> int:
         """Fetch them and print where they are."""
-        from unicon.motion.fetch import fetch
+        from unicon.motion.fetching.fetch import fetch
 
         console.print(str(fetch(console).folder), soft_wrap=True)
         return 0

@@ -32,7 +32,7 @@ class MotionsExport:
 
     def run(self, console: Console) -> int:
         """Write the file and print where it is."""
-        from unicon.motion.bvh_export import write_bvh
+        from unicon.motion.formats.bvh_export import write_bvh
 
         frames = self._frames(console)
         out = self.out or Path(f"{Path(self.motion).resolve().stem}.bvh")
@@ -42,7 +42,7 @@ class MotionsExport:
 
     def _frames(self, console: Console) -> CharacterState:
         from unicon.errors import UniconError
-        from unicon.motion.bvh_export import at_60_hz
+        from unicon.motion.formats.bvh_export import at_60_hz
         from unicon.render.take import take_from_bag
 
         if Path(self.motion).is_dir():
@@ -91,7 +91,7 @@ class FetchCmu:
 
     def run(self, console: Console) -> int:
         """Fetch what is not there yet and print what was done."""
-        from unicon.motion.cmu_database import BASE_URL, CmuConfig, fetch_cmu
+        from unicon.motion.fetching.cmu_database import BASE_URL, CmuConfig, fetch_cmu
 
         done = fetch_cmu(CmuConfig(self.subjects, self.out, self.base_url or BASE_URL), console)
         console.print(f"{done.folder}: {done.new} files fetched, {done.kept} were there", soft_wrap=True)
@@ -110,7 +110,7 @@ def find_clip(name: str, library: Path | None, console: Console) -> tuple[Clip, 
         UnknownNameError: when the library has no such clip.
     """
     from unicon.motion.clip import load_clip
-    from unicon.motion.library_choice import open_library
+    from unicon.motion.store.library_choice import open_library
 
     if name.endswith(".npz"):
         return load_clip(Path(name)), None

@@ -9,7 +9,7 @@ import numpy as np
 from unicon import rotations
 from unicon.humanoid import HUMANOID
 from unicon.humanoid.kinematics import forward_kinematics
-from unicon.motion.rest_pose import with_rest_pose
+from unicon.motion.retargeting.rest_pose import with_rest_pose
 from unicon.motion.source_motion import SourceMotion
 from unicon.state import CharacterState, differentiate
 

@@ -10,7 +10,7 @@ import numpy as np
 from unicon.humanoid import HUMANOID
 from unicon.humanoid.kinematics import forward_kinematics
 from unicon.motion.clip_index import RATE_HZ
-from unicon.motion.leg_ik import SIDES, leg_of, move_foot
+from unicon.motion.grounding.leg_ik import SIDES, leg_of, move_foot
 from unicon.state import CharacterState, differentiate
 
 PERIOD, STANCE = 60, 36

@@ -6,11 +6,11 @@ import json
 
 import pytest
 
-from tests.motion.test_library import write_library
+from tests.motion.store.test_library import write_library
 from tests.samples import swaying_clip
 from unicon import cli
-from unicon.motion.bvh_export import write_bvh
-from unicon.motion.library import ClipLibrary
+from unicon.motion.formats.bvh_export import write_bvh
+from unicon.motion.store.library import ClipLibrary
 
 
 @pytest.fixture

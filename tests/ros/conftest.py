@@ -21,7 +21,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from tests.samples import swaying_clip
-from unicon.motion.library_writer import LibraryWriter
+from unicon.motion.store.library_writer import LibraryWriter
 
 PATIENCE_S = 20.0
 

@@ -10,7 +10,7 @@ from std_srvs.srv import Trigger
 from tests.ros.conftest import end
 from tests.samples import swaying_clip
 from unicon.motion.clip_index import ClipInfo
-from unicon.motion.library_writer import LibraryWriter
+from unicon.motion.store.library_writer import LibraryWriter
 from unicon_msgs.msg import CharacterState, ExecutorStatus, SchedulerStatus, TargetFrames
 from unicon_msgs.srv import Play
 from unicon_ros.qos import LATCHED, STREAM_SUBSCRIBER

@@ -11,8 +11,8 @@ from tests.samples import swaying_clip
 from tests.schedulers.test_stitching import TICK_NS, path_of, play
 from unicon.errors import UniconError, UnknownNameError
 from unicon.motion.clip_index import ClipInfo
-from unicon.motion.library import ClipLibrary
-from unicon.motion.library_writer import LibraryWriter
+from unicon.motion.store.library import ClipLibrary
+from unicon.motion.store.library_writer import LibraryWriter
 from unicon.schedulers.dataset import DatasetConfig, DatasetScheduler, at_speed, choose
 from unicon.schedulers.stitching import StitcherConfig
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tests.samples import swaying_clip
 from unicon.motion.clip_index import ClipInfo
-from unicon.motion.library import ClipLibrary
-from unicon.motion.library_writer import LibraryWriter
+from unicon.motion.store.library import ClipLibrary
+from unicon.motion.store.library_writer import LibraryWriter
 
 CLASSES = {
     "stroll": ("walking/slow", "train", 60, 0.1),

@@ -7,10 +7,10 @@ import torch
 from safetensors.torch import load_file, save_file
 
 from tests.train.linear_quadratic import LinearQuadratic, make_learner
-from unicon.train.checkpoint import write_checkpoint
-from unicon.train.distributed import join_world
-from unicon.train.normalizer import moments_of
-from unicon.train.rollout import Batch
+from unicon.train.learning.distributed import join_world
+from unicon.train.learning.normalizer import moments_of
+from unicon.train.learning.rollout import Batch
+from unicon.train.runs.checkpoint import write_checkpoint
 
 
 def gradients(learner, batch):

@@ -9,13 +9,13 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from unicon.reward import RewardTerms
-from unicon.train.learner import Learner, LearnerConfig
-from unicon.train.networks import NetworkConfig
-from unicon.train.ppo import PPOConfig
-from unicon.train.recipe import Recipe
-from unicon.train.training_run import RunConfig
-from unicon.train.variance_controller import VarianceConfig
-from unicon.train.vector_environment import EnvironmentStep
+from unicon.train.environment.vector_environment import EnvironmentStep
+from unicon.train.learning.learner import Learner, LearnerConfig
+from unicon.train.learning.networks import NetworkConfig
+from unicon.train.learning.ppo import PPOConfig
+from unicon.train.learning.variance_controller import VarianceConfig
+from unicon.train.runs.recipe import Recipe
+from unicon.train.runs.training_run import RunConfig
 
 A = np.array([[1.0, 0.3], [0.0, 0.9]])
 B = np.array([[0.0], [0.5]])

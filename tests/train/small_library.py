@@ -8,10 +8,10 @@ import pytest
 
 from tests.samples import swaying_clip
 from unicon.motion.clip_index import ClipInfo
-from unicon.motion.library import ClipLibrary
-from unicon.motion.library_writer import LibraryWriter
-from unicon.train.batch_simulator.build import NoCompilerError, find_compiler
-from unicon.train.dataset import Dataset, choose_clips
+from unicon.motion.store.library import ClipLibrary
+from unicon.motion.store.library_writer import LibraryWriter
+from unicon.train.environment.batch_simulator.build import NoCompilerError, find_compiler
+from unicon.train.environment.dataset import Dataset, choose_clips
 
 CLIPS = (
     ClipInfo("walk_a", 90, "walking/forward"),

@@ -13,9 +13,9 @@ from tests.train.clip_samples import small_library
 from tests.train.policy_samples import make_card, make_weights
 from unicon.errors import UniconError
 from unicon.policy_file import read_policy
-from unicon.train import robustness
 from unicon.train.evaluation_commands import Evaluate, Robustness
-from unicon.train.policy_export import export_policy
+from unicon.train.scoring import robustness
+from unicon.train.scoring.policy_export import export_policy
 
 
 def run(command) -> str:

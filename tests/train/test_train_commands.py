@@ -8,8 +8,8 @@ from rich.console import Console
 
 from tests.train.small_library import make_library
 from unicon.errors import UniconError
-from unicon.train.checkpoint import checkpoints_of
-from unicon.train.recipe import read_recipe
+from unicon.train.runs.checkpoint import checkpoints_of
+from unicon.train.runs.recipe import read_recipe
 from unicon.train.train_commands import Train
 
 SMALL = (
@@ -64,7 +64,7 @@ def test_a_run_prints_and_saves_every_setting_and_can_be_prolonged(monkeypatch, 
 
 
 def test_ctrl_c_ends_with_the_command_to_go_on(monkeypatch, library, tmp_path):
-    monkeypatch.setattr("unicon.train.training_run.TrainingRun.train", lambda _: "stopped")
+    monkeypatch.setattr("unicon.train.runs.training_run.TrainingRun.train", lambda _: "stopped")
     status, printed = _begin(monkeypatch, library, tmp_path / "run")
     assert status == 0
     assert printed.splitlines()[-1].startswith("stopped after 0 iterations")

@@ -19,8 +19,8 @@ from unicon.humanoid import HUMANOID
 from unicon.humanoid.kinematics import forward_kinematics
 from unicon.motion.clip import Clip
 from unicon.motion.clip_index import RATE_HZ, ClipInfo
-from unicon.motion.contact import ContactConfig, Soles, find_contacts
-from unicon.motion.quality import NEAR_LIMIT_RAD, measure
+from unicon.motion.grounding.contact import ContactConfig, Soles, find_contacts
+from unicon.motion.grounding.quality import NEAR_LIMIT_RAD, measure
 
 LEFT, RIGHT, DARK = "#0072B2", "#D55E00", "#333333"
 SHOWN_HINGES = 3

@@ -9,8 +9,8 @@ from typing import Annotated
 import tyro
 from rich.console import Console
 
-from unicon.motion.import_config import ImportConfig
-from unicon.motion.split import SplitSettings
+from unicon.motion.catalogue.split import SplitSettings
+from unicon.motion.importing.import_config import ImportConfig
 
 Library = Annotated[Path | None, tyro.conf.Positional]
 
@@ -27,7 +27,7 @@ class MotionsImport:
 
     def run(self, console: Console) -> int:
         """Import and say what became of the files."""
-        from unicon.motion.import_run import run_import
+        from unicon.motion.importing.import_run import run_import
 
         outcome = run_import(self.config, console)
         console.print(f"{self.config.out}: {outcome}", soft_wrap=True)
@@ -50,7 +50,7 @@ class MotionsList:
         from rich.table import Table
 
         from unicon.errors import UnknownNameError
-        from unicon.motion.library_choice import open_library
+        from unicon.motion.store.library_choice import open_library
 
         library = open_library(self.library, console)
         infos = sorted(library.infos, key=lambda info: info.name)
@@ -83,8 +83,8 @@ class MotionsStats:
 
     def run(self, console: Console) -> int:
         """Print the figures."""
-        from unicon.motion.library_choice import open_library
-        from unicon.motion.library_stats import show_stats
+        from unicon.motion.store.library_choice import open_library
+        from unicon.motion.store.library_stats import show_stats
 
         show_stats(open_library(self.library, console), self.json, console)
         return 0
@@ -99,8 +99,8 @@ class MotionsTree:
 
     def run(self, console: Console) -> int:
         """Print the tree."""
-        from unicon.motion.class_tree import class_tree, rich_tree
-        from unicon.motion.library_choice import open_library
+        from unicon.motion.catalogue.class_tree import class_tree, rich_tree
+        from unicon.motion.store.library_choice import open_library
 
         library = open_library(self.library, console)
         console.print(rich_tree(class_tree(library.infos), str(library.folder)))
@@ -121,8 +121,8 @@ class MotionsSplit:
 
     def run(self, console: Console) -> int:
         """Divide, write the file and the library's index, and print the shares."""
-        from unicon.motion.library_choice import open_library
-        from unicon.motion.library_split import divide, split_table
+        from unicon.motion.store.library_choice import open_library
+        from unicon.motion.store.library_split import divide, split_table
 
         library = open_library(self.library, console)
         console.print(split_table(divide(library, self.settings, self.file, self.use)))

@@ -9,7 +9,7 @@ import numpy as np
 
 from unicon.errors import InputFileError
 from unicon.motion.clip import RATE_HZ, Clip, load_clip
-from unicon.motion.library_index import is_library
+from unicon.motion.store.library_index import is_library
 from unicon.recording.bag_reading import read_recording
 from unicon.state import CharacterState, stack
 from unicon.target_frames import NS_PER_S

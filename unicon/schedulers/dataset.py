@@ -16,11 +16,11 @@ import numpy as np
 
 from unicon import state
 from unicon.errors import UniconError, UnknownNameError
-from unicon.motion.balancer import MotionBalancer
-from unicon.motion.class_tree import class_tree
+from unicon.motion.catalogue.balancer import MotionBalancer
+from unicon.motion.catalogue.class_tree import class_tree
 from unicon.motion.clip import Clip, clip_from_poses
 from unicon.motion.clip_index import ClipInfo
-from unicon.motion.library import ClipLibrary
+from unicon.motion.store.library import ClipLibrary
 from unicon.schedulers.stitching import Stitcher, StitcherConfig
 
 MIN_SPEED, MAX_SPEED = 0.1, 4.0

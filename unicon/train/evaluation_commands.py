@@ -14,7 +14,7 @@ from unicon.errors import UniconError
 
 if TYPE_CHECKING:
     from unicon.policy import Policy
-    from unicon.train.evaluation_clips import ClipSource
+    from unicon.train.scoring.evaluation_clips import ClipSource
 
 Split = Literal["train", "test", "all"]
 Outcome = TypeVar("Outcome")
@@ -48,9 +48,9 @@ class Evaluate:
 
     def run(self, console: Console) -> int:
         """Evaluate, print the tables and write what was asked for."""
-        from unicon.train import evaluation_report as report
-        from unicon.train.evaluation import evaluate
-        from unicon.train.evaluation_runs import find_policy
+        from unicon.train.scoring import evaluation_report as report
+        from unicon.train.scoring.evaluation import evaluate
+        from unicon.train.scoring.evaluation_runs import find_policy
 
         policy = find_policy(self.policy)
         folder = _folder_to_save(self.policy, policy) if self.save else None
@@ -96,9 +96,9 @@ class Robustness:
 
     def run(self, console: Console) -> int:
         """Run all trials, print the table and write what was asked for."""
-        from unicon.train import robustness as trials
-        from unicon.train.evaluation_report import write_json
-        from unicon.train.evaluation_runs import find_policy
+        from unicon.train.scoring import robustness as trials
+        from unicon.train.scoring.evaluation_report import write_json
+        from unicon.train.scoring.evaluation_runs import find_policy
 
         policy = find_policy(self.policy)
         folder = _folder_to_save(self.policy, policy) if self.save else None
@@ -120,9 +120,9 @@ class Robustness:
 def _open_clips(
     library: Path | None, clips: Path | None, split: Split, dataset: str, jobs: int, console: Console
 ) -> ClipSource:
-    from unicon.motion.library_choice import open_library
-    from unicon.motion.worker_pool import core_count
-    from unicon.train.evaluation_clips import from_library, from_path
+    from unicon.motion.importing.worker_pool import core_count
+    from unicon.motion.store.library_choice import open_library
+    from unicon.train.scoring.evaluation_clips import from_library, from_path
 
     if clips and library:
         raise UniconError("give --library or --clips, not both")
@@ -156,8 +156,8 @@ def _folder_to_save(name: str, policy: Policy) -> Path:
 
 
 def _save(folder: Path, file: str, values: dict[str, Any]) -> None:
-    from unicon.train.evaluation_report import write_json
-    from unicon.train.policy_export import take_in_scores
+    from unicon.train.scoring.evaluation_report import write_json
+    from unicon.train.scoring.policy_export import take_in_scores
 
     write_json(folder / file, values)
     take_in_scores(folder)

@@ -11,9 +11,9 @@ import tyro
 from rich.console import Console
 
 if TYPE_CHECKING:
-    from unicon.train.distributed import World
-    from unicon.train.recipe import Recipe
-    from unicon.train.tracking_environment import TrackingEnvironment
+    from unicon.train.environment.tracking_environment import TrackingEnvironment
+    from unicon.train.learning.distributed import World
+    from unicon.train.runs.recipe import Recipe
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class Train:
 
     def run(self, console: Console) -> int:
         """Train until the budget is spent or Ctrl-C."""
-        from unicon.train.compute import choose_device
-        from unicon.train.distributed import join_world
+        from unicon.train.learning.compute import choose_device
+        from unicon.train.learning.distributed import join_world
 
         recipe = self.read_recipe()
         world = join_world(choose_device(recipe.learner.device))
@@ -64,8 +64,8 @@ class Train:
             UniconError: when one of them cannot be.
         """
         from unicon.errors import UniconError
-        from unicon.train.recipe import read_recipe
-        from unicon.train.run_folder import CONFIG_FILE
+        from unicon.train.runs.recipe import read_recipe
+        from unicon.train.runs.run_folder import CONFIG_FILE
 
         if self.resume and (self.recipe or self.init):
             raise UniconError("--resume goes on with the run's own settings; leave out --recipe and --init")
@@ -81,12 +81,12 @@ class Train:
         return read_recipe(source, (*changes, *self.set))
 
     def _train(self, recipe: Recipe, world: World, console: Console) -> int:
-        from unicon.train.checkpoint import read_networks
-        from unicon.train.learner import Learner
-        from unicon.train.recipe import recipe_text
-        from unicon.train.run_folder import open_run
-        from unicon.train.trained_policy import make_evaluation
-        from unicon.train.training_run import TrainingRun
+        from unicon.train.learning.learner import Learner
+        from unicon.train.runs.checkpoint import read_networks
+        from unicon.train.runs.recipe import recipe_text
+        from unicon.train.runs.run_folder import open_run
+        from unicon.train.runs.trained_policy import make_evaluation
+        from unicon.train.runs.training_run import TrainingRun
 
         environment = make_environment(self.library, recipe, world, console)
         learner = Learner(environment, recipe, world)
@@ -125,8 +125,8 @@ class Export:
 
     def run(self, console: Console) -> int:
         """Write the folder and print where it is."""
-        from unicon.train.policy_export import export_policy
-        from unicon.train.trained_policy import read_trained
+        from unicon.train.runs.trained_policy import read_trained
+        from unicon.train.scoring.policy_export import export_policy
 
         card, weights = read_trained(self.run_folder, self.policy.resolve().name)
         card = replace(
@@ -146,10 +146,10 @@ def make_environment(library: Path, recipe: Recipe, world: World, console: Conso
     Raises:
         UniconError: when the library cannot be read or no clip is left of it.
     """
-    from unicon.motion.library import ClipLibrary
-    from unicon.train.compute import share_of_processors
-    from unicon.train.dataset import choose_clips
-    from unicon.train.tracking_environment import TrackingEnvironment
+    from unicon.motion.store.library import ClipLibrary
+    from unicon.train.environment.dataset import choose_clips
+    from unicon.train.environment.tracking_environment import TrackingEnvironment
+    from unicon.train.learning.compute import share_of_processors
 
     config = recipe.environment
     dataset = choose_clips(ClipLibrary(library), recipe.dataset)

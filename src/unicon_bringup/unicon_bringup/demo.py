@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from unicon.errors import UniconError
-from unicon.motion.library_choice import open_library
+from unicon.motion.store.library_choice import open_library
 from unicon.recording.session_report import report_on, to_table
 from unicon.render.gl import NoGLError
 from unicon.render.scene import Picture

@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rich.console import Console
 
 from unicon.motion.clip import RATE_HZ
-from unicon.motion.library_choice import open_library
+from unicon.motion.store.library_choice import open_library
 from unicon.pacing import Pacer
 from unicon.schedulers.stitching import Stitcher
 from unicon_msgs.msg import SchedulerStatus, TargetFrames

@@ -15,7 +15,7 @@ import yaml
 
 from unicon.motion.catalogue.about import About, words
 from unicon.motion.catalogue.by_hand import by_hand
-from unicon.motion.class_tree import OTHER
+from unicon.motion.catalogue.class_tree import OTHER
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from unicon import rotations
-from unicon.motion.skeletons import load_mapping
+from unicon.motion.retargeting.skeletons import load_mapping
 from unicon.motion.source_motion import SourceMotion
 
 

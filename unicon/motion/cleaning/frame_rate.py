@@ -13,8 +13,8 @@ from scipy.ndimage import minimum_filter1d
 
 from unicon.motion.cleaning.body_paths import BodyPaths
 from unicon.motion.cleaning.support import mass_centre
-from unicon.motion.flight import GRAVITY
-from unicon.motion.smooth_change import spans
+from unicon.motion.grounding.flight import GRAVITY
+from unicon.motion.grounding.smooth_change import spans
 
 FACTORS = (0.25, 0.5, 2.0, 4.0)
 """By what files are wrong."""

@@ -9,7 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from unicon import rotations
 from unicon.motion.cleaning.body_paths import BodyPaths, turn_angles
-from unicon.motion.smooth_change import spans
+from unicon.motion.grounding.smooth_change import spans
 
 REPEAT_SHARE = 0.03
 """A frame repeats the one before when it changes by less than this share of what its neighbours do."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from unicon.motion.cleaning.body_paths import BodyPaths
-from unicon.motion.smooth_change import spans
+from unicon.motion.grounding.smooth_change import spans
 
 WINDOW_S = 0.1
 """Velocities are measured over this time, in which no limb comes back to where it was."""

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from unicon.motion.cleaning.body_paths import BodyPaths, turn_angles
-from unicon.motion.smooth_change import spans
+from unicon.motion.grounding.smooth_change import spans
 
 JUMP_SPEED = 4.0
 """The root's speed may differ by this much from that of the frames around [m/s]."""

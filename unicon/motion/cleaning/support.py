@@ -11,7 +11,7 @@ import numpy as np
 from scipy.ndimage import binary_opening
 
 from unicon.motion.cleaning.body_paths import BodyPaths
-from unicon.motion.smooth_change import spans
+from unicon.motion.grounding.smooth_change import spans
 
 _MASS = {
     "pelvis": 0.2,

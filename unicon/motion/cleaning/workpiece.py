@@ -9,7 +9,7 @@ import numpy as np
 from unicon.motion.cleaning.body_paths import BodyPaths, body_paths
 from unicon.motion.cleaning.decisions import Decision, What
 from unicon.motion.cleaning.frozen_frames import changes
-from unicon.motion.smooth_change import spans
+from unicon.motion.grounding.smooth_change import spans
 from unicon.motion.source_motion import SourceMotion
 
 SHORTEST_S = 0.5

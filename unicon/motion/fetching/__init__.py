@@ -1,0 +1,1 @@
+"""Motions that others hold, over the network."""

@@ -1,0 +1,1 @@
+"""Files of motions in every format: found, read, and written as BVH."""

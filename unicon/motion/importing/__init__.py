@@ -1,0 +1,1 @@
+"""`unicon motions import`: from files to a library."""

@@ -1,0 +1,1 @@
+"""Brings a source's poses onto the humanoid."""

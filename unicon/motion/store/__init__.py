@@ -1,0 +1,1 @@
+"""The clip library on disk."""

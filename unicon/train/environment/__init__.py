@@ -1,0 +1,1 @@
+"""What the policy learns in: many avatars that track clips."""

@@ -1,0 +1,1 @@
+"""The learner: networks, PPO, and nothing of what they learn in."""

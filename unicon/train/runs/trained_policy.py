@@ -1,0 +1,97 @@
+"""From a training to a policy: its card, its weights, and its scores while it is being trained."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from unicon.errors import UniconError
+from unicon.humanoid import HUMANOID
+from unicon.observation import OBSERVATION_ID
+from unicon.policy import NetworkPolicy
+from unicon.policy_file import CONTROL_HZ, PolicyCard, PolicyWeights
+from unicon.train.environment.dataset import Dataset
+from unicon.train.environment.observation_variants import parse_variant
+from unicon.train.learning.compute import share_of_processors
+from unicon.train.learning.learner import Learner
+from unicon.train.learning.networks import ActorCritic, export_weights
+from unicon.train.runs.checkpoint import CheckpointNumbers, read_networks
+from unicon.train.runs.recipe import Recipe, read_recipe
+from unicon.train.runs.run_folder import CONFIG_FILE
+from unicon.train.runs.training_run import Evaluate
+from unicon.train.scoring.evaluation import evaluate, summarise
+from unicon.train.scoring.evaluation_clips import ClipSource
+
+
+def card_of(recipe: Recipe, name: str) -> PolicyCard:
+    """Return the card of a policy that a recipe trains.
+
+    Raises:
+        UniconError: when the recipe's actions are those of no policy.
+    """
+    config = recipe.environment
+    if config.action == "kinematic":
+        raise UniconError("a run with environment.action=kinematic trains no policy: its actions do nothing")
+    variant = parse_variant(config.observation, config.stride)
+    return PolicyCard(
+        name=name,
+        description=recipe.description,
+        humanoid_id=HUMANOID.id,
+        observation_id=OBSERVATION_ID,
+        tau=len(variant.future),
+        control_hz=CONTROL_HZ,
+        action=config.action,
+        activation=recipe.network.activation,
+        training_data="",
+        future=variant.future,
+        past=variant.past,
+    )
+
+
+def read_trained(path: Path, name: str) -> tuple[PolicyCard, PolicyWeights]:
+    """Return the policy of a run, or of one of its checkpoints.
+
+    Raises:
+        InputFileError: when the run's settings or its checkpoint cannot be read.
+        UniconError: when it trains no policy.
+    """
+    folder = path if (path / CONFIG_FILE).is_file() else path.resolve().parents[1]
+    recipe = read_recipe(folder / CONFIG_FILE)
+    card = card_of(recipe, name)
+    network = ActorCritic(card.input_size, len(HUMANOID.joint_names), recipe.network)
+    numbers = read_networks(path, network)
+    card = PolicyCard(**{**vars(card), "training": _training(recipe, numbers)})
+    return card, export_weights(network)
+
+
+def make_evaluation(dataset: Dataset, recipe: Recipe) -> Evaluate | None:
+    """Return what scores the policy in MuJoCo, as `unicon evaluate` does, on some of the clips it learns.
+
+    None where the recipe asks for no evaluation or its actions are those of no policy.
+    """
+    count = recipe.run.evaluate_clips
+    if not count or recipe.environment.action == "kinematic":
+        return None
+    infos = dataset.infos
+    chosen = np.unique(np.linspace(0, len(infos) - 1, min(count, len(infos))).round().astype(int))
+    source = ClipSource("clips of the training", tuple(infos[i] for i in chosen), dataset.library.folder)
+    card = card_of(recipe, "in training")
+
+    def score(learner: Learner) -> Mapping[str, float]:
+        policy = NetworkPolicy(card, export_weights(learner.network))
+        figures = summarise(evaluate(policy, source, jobs=share_of_processors()))[0].figures
+        return {name: value for name, value in figures.items() if np.isfinite(value)}
+
+    return score
+
+
+def _training(recipe: Recipe, numbers: CheckpointNumbers) -> str:
+    """Return in words how it was trained."""
+    config = recipe.environment
+    return (
+        f"{recipe.description}; {config.action} at {config.control_hz} Hz in {config.simulator}; "
+        f"{numbers.samples / 1e6:.1f} M samples in {numbers.seconds / 3600:.2f} h "
+        f"on {numbers.processes} process(es)"
+    )

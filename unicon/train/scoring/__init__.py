@@ -1,0 +1,1 @@
+"""Scores of a policy, and its folder with them."""
