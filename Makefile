@@ -7,7 +7,7 @@ DEMO_ARGS ?=
 BENCH_ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check format doctor bench-graph bench-motions clean
+.PHONY: help setup demo test check format doctor bench-graph bench-motions bench-train clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -43,6 +43,10 @@ bench-graph: setup ## run the graph for 60 s and write out/bench/graph.json
 bench-motions: ## the motion library beside mink, bvhio and upc-pymotion: out/bench/motions_speed.json
 	@$(PYTHON) tools/setup.py base ros dev bench
 	@OMP_NUM_THREADS=1 tools/run python benchmarks/motions.py $(if $(MOTIONS),--motions $(MOTIONS)) $(BENCH_ARGS)
+
+bench-train: ## the trainer beside mujoco's rollout and stable-baselines3: out/bench/train.json
+	@$(PYTHON) tools/setup.py base ros train dev bench
+	@OMP_NUM_THREADS=1 tools/run python benchmarks/training.py $(BENCH_ARGS)
 
 clean: ## remove everything that set-up and runs made
 	rm -rf .venv out ros_ws/build ros_ws/install ros_ws/log

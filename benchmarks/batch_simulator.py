@@ -1,7 +1,7 @@
 """The batch simulator beside MuJoCo's own rollout: control steps a second of both in one run, on one thread.
 
 Both simulate the same model from the same states under the same servo controls, 60 Hz with four physics
-steps; the batch simulator also observes (tau 1) and measures the tracking errors. In `standing` the avatars
+steps; the batch simulator also observes (tau 1) and computes the reward. In `standing` the avatars
 sway on their feet, in `fallen` they wriggle on the floor. The two take turns and the best of several turns
 counts, so that other programs disturb little. Writes out/bench/batch_simulator.json.
 """
@@ -22,6 +22,7 @@ from mujoco import rollout
 from unicon.control import ServoControl
 from unicon.humanoid import HUMANOID
 from unicon.humanoid.mjcf import MOTOR_GROUP, compile_model
+from unicon.reward import reward_terms, total_reward
 from unicon.train.environment.batch_simulator.build import processor
 from unicon.train.environment.batch_simulator.kernel import load_kernel
 from unicon.train.environment.batch_simulator.simulator import BatchSimulator, BatchSimulatorConfig
@@ -65,13 +66,13 @@ class Scene:
         return BatchSimulator(self.config.envs, options)
 
     def time_batch(self) -> float:
-        """Return control steps a second, with observation and errors."""
+        """Return control steps a second, with observation and reward."""
         simulator = self.simulator(threads=1)
         simulator.rows[:] = self.start
         began = time.perf_counter()
         for _ in range(self.config.ticks):
             simulator.step(self.control)
-            simulator.errors(self.target)
+            total_reward(reward_terms(simulator.errors(self.target)))
             simulator.observe(self.target[:, None])
         return self.config.envs * self.config.ticks / (time.perf_counter() - began)
 

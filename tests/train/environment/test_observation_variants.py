@@ -24,6 +24,12 @@ def test_a_name_says_which_frames_are_seen(name, stride, future, past, size):
     assert (variant.future, variant.past, variant.size) == (future, past, size)
 
 
+@pytest.mark.parametrize("name", ["targets-only", "phase-onehot", "phase-number"])
+def test_the_baselines_views_are_of_the_next_target_frame(name):
+    assert parse_variant(name, 2) == ((2,), 0, name)
+    assert parse_variant("tau-1", 2).view == "whole"
+
+
 def test_a_servo_aims_at_the_nearest_frame_to_come():
     assert parse_variant("frames-0-4-16-64", 1).nearest == 4
     assert parse_variant("lookahead-3", 2).nearest == 6
@@ -44,6 +50,8 @@ def test_a_servo_aims_at_the_nearest_frame_to_come():
         "frames-",
         "frames-4-4",
         "x-1",
+        "phase-1",
+        "whole",
     ],
 )
 def test_other_names_are_refused_with_those_that_there_are(name):

@@ -4,21 +4,29 @@
     lookahead-k    only the k-th target frame ahead
     stack-k        the next target frame, and the avatar's own last k states
     frames-a-b-c   those target frames, counted from the present as 0 (Chentanez 2018: frames-0-4-16-64)
+    targets-only   the next target frame, and nothing of the avatar (Kinematic-State: open loop)
+    phase-onehot   the avatar, how much of the clip is over, and a 1 at the clip's place (DeepMimic-Onehot)
+    phase-number   the avatar, how much of the clip is over, and the clip's place as a number
+                   (DeepMimic-Variable)
 
 Frames are counted in strides. The input is s_t of ``unicon.observation.policy_input`` for the target frames,
 then o(X~) of each past state, the latest first, as it was seen then; before the start of an episode its
-first one stands for them.
+first one stands for them. The last three are views of s_t for one target frame (observation_views.py).
 """
 
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from unicon.errors import UniconError
 from unicon.observation import MAX_TAU, OBSERVATION_SIZE, policy_input_size
 
+View = Literal["whole", "targets-only", "phase-onehot", "phase-number"]
+"""What the policy is given of s_t."""
+
 _MAX_AHEAD = 240
+_VIEWS: tuple[View, ...] = ("targets-only", "phase-onehot", "phase-number")
 
 
 class ObservationVariant(NamedTuple):
@@ -28,10 +36,12 @@ class ObservationVariant(NamedTuple):
     """Target frames, counted from the present [1/60 s]."""
     past: int = 0
     """How many of the avatar's last states, one a control step."""
+    view: View = "whole"
+    """What the policy is given of that; other than "whole" only in baselines."""
 
     @property
     def size(self) -> int:
-        """Length of the input."""
+        """Length of s_t with the past states, of which the view is taken."""
         return policy_input_size(len(self.future)) + self.past * OBSERVATION_SIZE
 
     @property
@@ -59,7 +69,10 @@ def parse_variant(name: str, stride: int) -> ObservationVariant:
         return ObservationVariant((stride,), k)
     if kind == "frames" and 1 <= len(set(numbers)) == len(numbers) <= MAX_TAU and max(numbers) <= _MAX_AHEAD:
         return ObservationVariant(tuple(stride * i for i in numbers))
+    for view in _VIEWS:
+        if name == view:
+            return ObservationVariant((stride,), view=view)
     raise UniconError(
         f"environment: there is no observation {name!r}; expected tau-1 to tau-{MAX_TAU}, lookahead-k, "
-        "stack-k or frames such as frames-0-4-16-64"
+        f"stack-k, frames such as frames-0-4-16-64, {', '.join(_VIEWS)}"
     )
