@@ -41,7 +41,7 @@ bench-graph: setup ## run the graph for 60 s and write out/bench/graph.json
 	@tools/run python benchmarks/graph.py
 
 bench-motions: ## the motion library beside mink, bvhio and upc-pymotion: out/bench/motions_speed.json
-	@$(PYTHON) tools/setup.py base ros dev bench
+	@$(PYTHON) tools/setup.py base ros train dev bench
 	@OMP_NUM_THREADS=1 tools/run python benchmarks/motions.py $(if $(MOTIONS),--motions $(MOTIONS)) $(BENCH_ARGS)
 
 bench-train: ## the trainer beside mujoco's rollout and stable-baselines3: out/bench/train.json

@@ -14,6 +14,7 @@ from unicon.errors import UniconError
 from unicon.motion.motion_commands import MotionsImport, MotionsList, MotionsSplit, MotionsStats, MotionsTree
 from unicon.render.show import RenderConfig
 from unicon.tool_commands import FetchCmu, MotionsExport, MotionsInspect, find_clip
+from unicon.train.comparison_commands import Compare
 from unicon.train.evaluation_commands import Evaluate, Robustness
 from unicon.train.train_commands import Export, Train
 
@@ -193,6 +194,7 @@ Command = (
     | Annotated[Export, tyro.conf.subcommand("export")]
     | Annotated[Evaluate, tyro.conf.subcommand("evaluate")]
     | Annotated[Robustness, tyro.conf.subcommand("robustness")]
+    | Annotated[Compare, tyro.conf.subcommand("compare")]
 )
 
 

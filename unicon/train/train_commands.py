@@ -11,6 +11,7 @@ import tyro
 from rich.console import Console
 
 if TYPE_CHECKING:
+    from unicon.train.environment.observation_views import ViewedEnvironment
     from unicon.train.environment.tracking_environment import TrackingEnvironment
     from unicon.train.learning.distributed import World
     from unicon.train.runs.recipe import Recipe
@@ -43,7 +44,7 @@ class Train:
     resume: bool = False
     """Go on with the run in the folder, with its settings."""
     set: tuple[str, ...] = ()
-    """Settings that replace the recipe's, such as ppo.epochs=1 variance.learned=true."""
+    """Settings that replace the recipe's, such as ppo.epochs=1 variance.mode=learned."""
 
     def run(self, console: Console) -> int:
         """Train until the budget is spent or Ctrl-C."""
@@ -140,7 +141,9 @@ class Export:
         return 0
 
 
-def make_environment(library: Path, recipe: Recipe, world: World, console: Console) -> TrackingEnvironment:
+def make_environment(
+    library: Path, recipe: Recipe, world: World, console: Console
+) -> TrackingEnvironment | ViewedEnvironment:
     """Return the environments of this process.
 
     Raises:
@@ -148,6 +151,7 @@ def make_environment(library: Path, recipe: Recipe, world: World, console: Conso
     """
     from unicon.motion.store.library import ClipLibrary
     from unicon.train.environment.dataset import choose_clips
+    from unicon.train.environment.observation_views import as_seen
     from unicon.train.environment.tracking_environment import TrackingEnvironment
     from unicon.train.learning.compute import share_of_processors
 
@@ -157,4 +161,4 @@ def make_environment(library: Path, recipe: Recipe, world: World, console: Conso
     console.print(f"{len(dataset.rows)} clips, {seconds / 60.0:.1f} min, of {library}", soft_wrap=True)
     if config.threads == 0 and world.size > 1:
         config = replace(config, threads=share_of_processors())
-    return TrackingEnvironment(dataset, config, world.rank, console.print)
+    return as_seen(TrackingEnvironment(dataset, config, world.rank, console.print))

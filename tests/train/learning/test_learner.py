@@ -49,7 +49,7 @@ def test_the_noise_follows_the_schedule_and_is_not_learned():
 
 
 def test_as_an_ablation_the_noise_is_learned_from_the_first_point_on():
-    learner = make_learner(variance=VarianceConfig(learned=True, points=((0.0, 0.4), (1.0, 0.1))))
+    learner = make_learner(variance=VarianceConfig(mode="learned", points=((0.0, 0.4), (1.0, 0.1))))
     assert learner.network.log_std.exp().item() == pytest.approx(0.4)
     std = [learner.iterate(0.9).std for _ in range(5)][-1]
     assert std != pytest.approx(0.4, rel=1e-4)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from unicon.errors import UniconError
-from unicon.train.learning.variance_controller import VarianceConfig, scheduled_log_std
+from unicon.train.learning.variance_controller import VarianceConfig, control_log_std, scheduled_log_std
 
 
 def _std(config, progress, samples=0, size=2):
@@ -41,3 +41,23 @@ def test_too_few_factors_are_refused():
 def test_what_is_no_schedule_is_refused(points):
     with pytest.raises(UniconError, match="variance"):
         VarianceConfig(points=points)
+
+
+LEARNED = np.array([-1.0, -3.0])
+
+
+def test_controlled_deviations_keep_what_was_learned_and_have_the_schedules_mean():
+    config = VarianceConfig(mode="controlled", points=((0.0, np.exp(-2.0)), (0.5, np.exp(-4.0))))
+    assert control_log_std(config, LEARNED, 0.25, 0) == pytest.approx([-2.0, -4.0])  # mean -3
+
+
+def test_after_the_last_point_the_controller_lets_go():
+    config = VarianceConfig(mode="controlled", points=((0.0, 0.2), (0.5, 0.1)))
+    assert control_log_std(config, LEARNED, 0.6, 0) == pytest.approx(LEARNED)
+
+
+def test_the_other_modes_take_the_schedule_or_what_was_learned_alone():
+    points = ((0.0, 0.2), (1.0, 0.1))
+    scheduled = control_log_std(VarianceConfig(points=points), LEARNED, 0.0, 0)
+    assert scheduled == pytest.approx(np.log([0.2, 0.2]))
+    assert control_log_std(VarianceConfig(mode="learned", points=points), LEARNED, 0.0, 0) is LEARNED

@@ -22,7 +22,7 @@ def test_paper_has_the_papers_numbers():
     assert recipe.environment.action == "torque"
     assert recipe.ppo.clip == 0.0
     assert recipe.ppo.kl_penalty > 0.0
-    assert not recipe.variance.learned
+    assert recipe.variance.mode == "controlled"
 
 
 def test_the_text_of_a_recipe_has_every_setting_and_is_read_back(tmp_path):

@@ -22,7 +22,7 @@ from unicon.train.learning.networks import ActorCritic
 from unicon.train.learning.normalizer import moments_of
 from unicon.train.learning.ppo import PPO, NotFiniteError, UpdateReport, gaussian_log_prob
 from unicon.train.learning.rollout import Rollout
-from unicon.train.learning.variance_controller import scheduled_log_std
+from unicon.train.learning.variance_controller import control_log_std, scheduled_log_std
 
 if TYPE_CHECKING:
     from unicon.train.runs.recipe import Recipe
@@ -83,8 +83,9 @@ class Learner:
             torch.manual_seed(config.seed)
             self.network = ActorCritic(*sizes, recipe.network).to(self.device)
         self.generator = torch.Generator(self.device).manual_seed(config.seed * 1009 + self.world.rank)
-        self._schedule_noise(progress=0.0)
-        self.network.log_std.requires_grad_(recipe.variance.learned)
+        first = scheduled_log_std(recipe.variance, 0.0, 0, environment.action_size)
+        self.network.log_std.data.copy_(torch.from_numpy(first))
+        self.network.log_std.requires_grad_(recipe.variance.mode != "scheduled")
         self.ppo = PPO(self.network, recipe.ppo, self.world, self.generator)
         dtype = choose_dtype(config.precision, self.device)
         self.rollout = Rollout(config.steps, environment.num_envs, *sizes, dtype, self.device)
@@ -117,8 +118,7 @@ class Learner:
         """
         if self.observation is None:
             self.start()
-        if not self.recipe.variance.learned:
-            self._schedule_noise(progress)
+        self._control_noise(progress)
         began = time.perf_counter()
         self.collect()
         collected = time.perf_counter()
@@ -175,9 +175,9 @@ class Learner:
         if any(bad):
             raise NotFiniteError(names[bad.index(True)], self.rollout.batch())
 
-    def _schedule_noise(self, progress: float) -> None:
-        size = self.environment.action_size
-        log_std = scheduled_log_std(self.recipe.variance, progress, self.samples, size)
+    def _control_noise(self, progress: float) -> None:
+        log_std = self.network.log_std.data.double().cpu().numpy()
+        log_std = control_log_std(self.recipe.variance, log_std, progress, self.samples)
         self.network.log_std.data.copy_(torch.from_numpy(log_std))
 
     def _explained(self) -> float:

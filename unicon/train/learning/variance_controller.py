@@ -1,7 +1,13 @@
-"""The policy variance controller (paper, section 4.4): the exploration noise follows a schedule.
+"""The policy variance controller (paper, section 4.4): how wide the exploration noise is.
 
-A learned deviation shrinks too early or never; here its logarithm is linear between given points of the
-training, so early training explores and late training is precise. A learned one is left as an ablation.
+A deviation that is learned freely shrinks too early or never. The controller makes its level follow a
+schedule whose logarithm is linear between given points of the training, so that early training explores
+and late training is precise:
+
+controlled   each joint's log std is learned by gradient; before every iteration up to the last point all
+             are shifted by the same amount, so that their mean is the schedule's. The paper's.
+scheduled    every joint's log std is the schedule's, times its factor. Nothing is learned.
+learned      learned from the first point's value on, without a controller: the ablation.
 """
 
 from __future__ import annotations
@@ -18,8 +24,8 @@ from unicon.errors import UniconError
 class VarianceConfig:
     """How wide the policy's noise is."""
 
-    learned: bool = False
-    """Learn log(std) by gradient from the first point's value on, instead of following the schedule."""
+    mode: Literal["controlled", "scheduled", "learned"] = "scheduled"
+    """Who decides: see above."""
     points: tuple[tuple[float, float], ...] = ((0.0, 0.16), (0.15, 0.10), (1.0, 0.045))
     """When, and the standard deviation then [shares of the largest torque]; log-linear in between."""
     axis: Literal["progress", "million_samples"] = "progress"
@@ -59,3 +65,23 @@ def scheduled_log_std(config: VarianceConfig, progress: float, samples: int, act
     times, deviations = np.array(config.points, float).T
     factors = np.array(config.joint_factors or np.ones(action_size))
     return np.interp(now, times, np.log(deviations)) + np.log(factors)
+
+
+def control_log_std(config: VarianceConfig, log_std: np.ndarray, progress: float, samples: int) -> np.ndarray:
+    """Return log(std) ``(A,)`` to explore with in the next iteration.
+
+    controlled: ``log_std + (mean of the schedule - mean of log_std)``, until the last point is passed.
+
+    Args:
+        config: mode and schedule.
+        log_std: as the last iteration left it ``(A,)``.
+        progress: share of the budget that is spent.
+        samples: samples of all processes so far.
+    """
+    if config.mode == "learned":
+        return log_std
+    wanted = scheduled_log_std(config, progress, samples, len(log_std))
+    if config.mode == "scheduled":
+        return wanted
+    now = progress if config.axis == "progress" else samples / 1e6
+    return log_std if now > config.points[-1][0] else log_std + (wanted.mean() - log_std.mean())

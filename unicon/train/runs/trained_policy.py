@@ -55,10 +55,15 @@ def read_trained(path: Path, name: str) -> tuple[PolicyCard, PolicyWeights]:
 
     Raises:
         InputFileError: when the run's settings or its checkpoint cannot be read.
-        UniconError: when it trains no policy.
+        UniconError: when it trains no policy, or one for comparisons only.
     """
     folder = path if (path / CONFIG_FILE).is_file() else path.resolve().parents[1]
     recipe = read_recipe(folder / CONFIG_FILE)
+    if not _sees_whole_input(recipe):
+        raise UniconError(
+            f"{folder}: saw environment.observation={recipe.environment.observation}, of which no "
+            "policy file can be made; it is for `unicon compare`"
+        )
     card = card_of(recipe, name)
     network = ActorCritic(card.input_size, len(HUMANOID.joint_names), recipe.network)
     numbers = read_networks(path, network)
@@ -72,7 +77,7 @@ def make_evaluation(dataset: Dataset, recipe: Recipe) -> Evaluate | None:
     None where the recipe asks for no evaluation or its actions are those of no policy.
     """
     count = recipe.run.evaluate_clips
-    if not count or recipe.environment.action == "kinematic":
+    if not count or recipe.environment.action == "kinematic" or not _sees_whole_input(recipe):
         return None
     infos = dataset.infos
     chosen = np.unique(np.linspace(0, len(infos) - 1, min(count, len(infos))).round().astype(int))
@@ -85,6 +90,11 @@ def make_evaluation(dataset: Dataset, recipe: Recipe) -> Evaluate | None:
         return {name: value for name, value in figures.items() if np.isfinite(value)}
 
     return score
+
+
+def _sees_whole_input(recipe: Recipe) -> bool:
+    """Return whether the network sees s_t as policies do, not a baseline's view of it."""
+    return parse_variant(recipe.environment.observation, recipe.environment.stride).view == "whole"
 
 
 def _training(recipe: Recipe, numbers: CheckpointNumbers) -> str:
