@@ -15,7 +15,6 @@ The root's translation is its place in the world. Lengths stay in the file's uni
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -24,6 +23,7 @@ import numpy as np
 
 from unicon import rotations
 from unicon.errors import InputFileError
+from unicon.motion.formats.line_numbers import LineNumbers
 from unicon.motion.formats.motion_file import MotionFile
 from unicon.motion.source_motion import SourceMotion
 
@@ -54,11 +54,11 @@ _Block = dict[str, tuple[int, list[str]]]
 """A bone's keys, each with its line and the words behind it."""
 
 
-class _Lines:
+class _Lines(LineNumbers):
     """The lines of a file that say something, with their numbers for error messages."""
 
     def __init__(self, file: MotionFile) -> None:
-        self.origin, self.number = file.origin, 0
+        super().__init__(file.origin)
         lines = file.read().decode("latin-1").splitlines()
         self.first = lines[0] if lines else ""
         pairs = ((number, line.split("#", 1)[0].split()) for number, line in enumerate(lines, 1))
@@ -68,26 +68,6 @@ class _Lines:
         for number, words in self._lines:
             self.number = number
             yield words
-
-    def fail(self, problem: str) -> InputFileError:
-        """Return an error at the present line."""
-        return InputFileError(f"{self.origin}, line {self.number}: {problem}")
-
-    def numbers(self, words: list[str], count: int, what: str) -> list[float]:
-        """Return ``count`` finite numbers.
-
-        Raises:
-            InputFileError: when the words are others.
-        """
-        if len(words) != count:
-            raise self.fail(f"{what} has {len(words)} numbers, expected {count}")
-        try:
-            values = [float(word) for word in words]
-        except ValueError:
-            raise self.fail(f"{what} holds something that is not a number") from None
-        if not all(map(math.isfinite, values)):
-            raise self.fail(f"{what} holds a number that is not finite")
-        return values
 
 
 def read_amc(file: MotionFile) -> SourceMotion:

@@ -12,7 +12,6 @@ second ROOT.
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass, field, replace
 
@@ -20,6 +19,7 @@ import numpy as np
 
 from unicon import rotations
 from unicon.errors import InputFileError
+from unicon.motion.formats.line_numbers import LineNumbers
 from unicon.motion.formats.motion_file import MotionFile
 from unicon.motion.source_motion import SourceMotion
 
@@ -45,11 +45,11 @@ class _Joint:
         return {channel[0]: column for column, channel in wanted if channel.endswith(kind)}
 
 
-class _Reader:
+class _Reader(LineNumbers):
     """The lines of a file, with their numbers for error messages."""
 
     def __init__(self, file: MotionFile) -> None:
-        self.origin, self.number = file.origin, 0
+        super().__init__(file.origin)
         self._lines = file.read().removeprefix(b"\xef\xbb\xbf").splitlines()
         while self._lines and not self._lines[-1].strip():
             self._lines.pop()
@@ -70,26 +70,6 @@ class _Reader:
     def rows(self) -> list[bytes]:
         """Return the remaining lines that are not blank."""
         return [line for line in self._lines[self.number :] if line.strip()]
-
-    def fail(self, problem: str) -> InputFileError:
-        """Return an error at the present line."""
-        return InputFileError(f"{self.origin}, line {self.number}: {problem}")
-
-    def numbers(self, words: list[str], count: int, what: str) -> list[float]:
-        """Return ``count`` finite numbers.
-
-        Raises:
-            InputFileError: when the words are others.
-        """
-        if len(words) != count:
-            raise self.fail(f"{what} has {len(words)} numbers, expected {count}")
-        try:
-            values = [float(word) for word in words]
-        except ValueError:
-            raise self.fail(f"{what} holds something that is not a number") from None
-        if not all(map(math.isfinite, values)):
-            raise self.fail(f"{what} holds a number that is not finite")
-        return values
 
     def _decode(self, line: bytes) -> str:
         try:

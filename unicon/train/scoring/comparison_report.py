@@ -17,7 +17,7 @@ from rich.table import Table
 from unicon.errors import UniconError
 from unicon.motion.store.library_index import replace_file
 from unicon.train.runs.metrics_log import METRICS_FILE
-from unicon.train.scoring.evaluation_report import write_json
+from unicon.train.scoring.evaluation_report import columns_of, write_json
 
 FORMAT = "unicon-comparison-1"
 NAME = "comparison"
@@ -65,22 +65,8 @@ class Outcome:
         return Outcome(**{**values, **sides, "curve": curve})
 
 
-class Column(NamedTuple):
-    """A column with both sides of the split."""
-
-    name: str
-    heading: str
-    form: str
-
-
-COLUMNS = (
-    Column("survival", "survival", "{:.3f}"),
-    Column("success", "S1", "{:.1%}"),
-    Column("success_s3", "S3", "{:.1%}"),
-    Column("reward", "reward", "{:.3f}"),
-    Column("root_relative_mm", "rel. mm", "{:.0f}"),
-    Column("chatter", "chatter", "{:.3f}"),
-)
+COLUMNS = columns_of("survival", "success", "success_s3", "reward", "root_relative_mm", "chatter")
+"""Columns with both sides of the split."""
 
 
 def read_curve(folder: Path) -> tuple[CurvePoint, ...]:

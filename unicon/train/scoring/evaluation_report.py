@@ -59,6 +59,14 @@ COLUMNS = (
     Column("chatter", "chatter", "{:.3f}"),
     Column("skate_mm_per_frame", "skate mm", "{:.1f}"),
 )
+
+
+def columns_of(*names: str) -> tuple[Column, ...]:
+    """Return the columns of these figures, in this order."""
+    by_name = {column.name: column for column in COLUMNS}
+    return tuple(by_name[name] for name in names)
+
+
 TERM_COLUMNS = tuple(Column(name, name.replace("_", " "), "{:.3f}") for name in RewardTerms._fields)
 
 
