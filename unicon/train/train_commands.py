@@ -54,6 +54,8 @@ class Train:
         recipe = self.read_recipe()
         world = join_world(choose_device(recipe.learner.device))
         try:
+            if recipe.specialists is not None:
+                return self._train_specialists(recipe, world, console)
             return self._train(recipe, world, console if world.leads else Console(quiet=True))
         finally:
             world.leave()
@@ -100,10 +102,23 @@ class Train:
         run = TrainingRun(learner, self.out, console, make_evaluation(environment.dataset, recipe))
         ending = run.train()
         done = f"{ending} after {learner.iteration} iterations, {run.seconds / 60.0:.1f} min"
+        return self._say(console, done, stopped=ending == "stopped")
+
+    def _train_specialists(self, recipe: Recipe, world: World, console: Console) -> int:
+        from unicon.errors import UniconError
+        from unicon.train.specialists.specialists_run import train_specialists
+
+        if world.size > 1:
+            raise UniconError("specialists train in processes of their own; leave out torchrun")
+        ending = train_specialists(self.library, self.out, recipe, console, self.resume, self.init)
+        return self._say(console, ending, stopped=ending == "stopped")
+
+    def _say(self, console: Console, done: str, stopped: bool) -> int:
+        """Say how it ended and how to go on."""
         go_on = shlex.join(
             ["unicon", "train", "--library", str(self.library), "--out", str(self.out), "--resume"]
         )
-        next_step = f"; go on with: {go_on}" if ending == "stopped" else f": {self.out}"
+        next_step = f"; go on with: {go_on}" if stopped else f": {self.out}"
         console.print(f"{done}{next_step}", soft_wrap=True, highlight=False)
         return 0
 

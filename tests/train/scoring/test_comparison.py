@@ -11,6 +11,7 @@ from rich.console import Console
 
 from tests.train.small_library import make_library
 from unicon.errors import UniconError
+from unicon.train.runs.checkpoint import checkpoints_of, read_numbers
 from unicon.train.scoring import comparison
 from unicon.train.scoring.comparison import ComparisonConfig, compare
 from unicon.train.scoring.comparison_report import CurvePoint, Outcome, read_curve, table, write_report
@@ -59,6 +60,35 @@ def test_recipes_are_trained_scored_and_put_side_by_side(library, tmp_path):
     assert rows[2]["test_survival"] == ""
     assert (out / "comparison.md").read_text().count("\n") == 5
     assert (out / "comparison.png").stat().st_size > 1000
+
+
+def test_specialists_are_scored_by_their_student_with_the_cost_of_all_stages(library, tmp_path):
+    changes = (
+        "environment.num_envs=32",
+        "environment.threads=1",
+        "network.actor_sizes=[16]",
+        "network.critic_sizes=[16]",
+        "ppo.minibatch=64",
+        "learner.threads=1",
+        "learner.steps=8",
+        "run.tensorboard=false",
+        "run.minutes=0.005",
+        "run.evaluate_clips=2",
+        "specialists.jobs=1",
+        "specialists.min_clips=1",
+        "specialists.noisy_starts=1",
+        "specialists.singles_share=0",
+        "specialists.student.actor_sizes=[32]",
+        "specialists.student.critic_sizes=[16]",
+        "specialists.distillation.minibatch=64",
+        "specialists.distillation.replay_mb=8",
+    )
+    (outcome,), _ = go(library, tmp_path / "out", "specialists", changes=changes)
+    stages = ("generalist", "specialists/walking", "student")
+    assert outcome.train and outcome.test
+    runs = [tmp_path / "out" / "specialists" / stage for stage in stages]
+    samples = [read_numbers(checkpoints_of(run)[-1]).samples for run in runs]
+    assert outcome.million_samples == pytest.approx(sum(samples) / 1e6)
 
 
 def test_what_is_finished_is_not_done_again(library, tmp_path, monkeypatch):

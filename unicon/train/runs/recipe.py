@@ -22,6 +22,7 @@ from unicon.train.learning.ppo import PPOConfig
 from unicon.train.learning.variance_controller import VarianceConfig
 from unicon.train.runs.settings import build, plain
 from unicon.train.runs.training_run import RunConfig
+from unicon.train.specialists.config import SpecialistsConfig
 
 RECIPES = Path(__file__).parent / "recipes"
 
@@ -46,6 +47,8 @@ class Recipe:
     """Size of an iteration, device."""
     run: RunConfig = field(default_factory=RunConfig)
     """Budget, checkpoints, logs."""
+    specialists: SpecialistsConfig | None = None
+    """Stages of a training by specialists; none: an ordinary run."""
 
 
 def read_recipe(name: str | Path, changes: Sequence[str] = ()) -> Recipe:

@@ -23,6 +23,7 @@ from unicon.train.runs.run_folder import CONFIG_FILE
 from unicon.train.runs.training_run import Evaluate
 from unicon.train.scoring.evaluation import evaluate, summarise
 from unicon.train.scoring.evaluation_clips import ClipSource
+from unicon.train.specialists.plan import read_plan
 
 
 def card_of(recipe: Recipe, name: str) -> PolicyCard:
@@ -51,7 +52,7 @@ def card_of(recipe: Recipe, name: str) -> PolicyCard:
 
 
 def read_trained(path: Path, name: str) -> tuple[PolicyCard, PolicyWeights]:
-    """Return the policy of a run, or of one of its checkpoints.
+    """Return the policy of a run or of a checkpoint; of a training by specialists, the newest student.
 
     Raises:
         InputFileError: when the run's settings or its checkpoint cannot be read.
@@ -59,6 +60,11 @@ def read_trained(path: Path, name: str) -> tuple[PolicyCard, PolicyWeights]:
     """
     folder = path if (path / CONFIG_FILE).is_file() else path.resolve().parents[1]
     recipe = read_recipe(folder / CONFIG_FILE)
+    if recipe.specialists is not None:
+        student = read_plan(folder).last_run
+        if student is None:
+            raise UniconError(f"{folder}: has no student yet; go on with its training with --resume")
+        return read_trained(student, name)
     if not _sees_whole_input(recipe):
         raise UniconError(
             f"{folder}: saw environment.observation={recipe.environment.observation}, of which no "

@@ -11,7 +11,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from rich.console import Console
@@ -19,20 +19,25 @@ from rich.console import Console
 from unicon.errors import InputFileError, UniconError
 from unicon.motion.clip_index import ClipInfo
 from unicon.motion.store.library import ClipLibrary
+from unicon.policy_file import PolicyWeights
 from unicon.train.environment.dataset import Dataset, choose_clips
 from unicon.train.environment.observation_views import as_seen
 from unicon.train.environment.tracking_environment import TrackingEnvironment
 from unicon.train.learning.learner import Learner
 from unicon.train.learning.networks import export_weights
-from unicon.train.runs.recipe import recipe_text
-from unicon.train.runs.run_folder import RunFolder, open_run
+from unicon.train.runs.checkpoint import checkpoints_of, read_numbers
+from unicon.train.runs.recipe import Recipe, read_recipe, recipe_text
+from unicon.train.runs.run_folder import CONFIG_FILE, RunFolder, open_run
+from unicon.train.runs.trained_policy import read_trained
 from unicon.train.runs.training_run import Evaluate, TrainingRun
 from unicon.train.scoring.ablations import Candidate, read_candidate
 from unicon.train.scoring.baseline_policies import score_network
 from unicon.train.scoring.comparison_report import Outcome, read_curve, table, write_report
-from unicon.train.scoring.evaluation import summarise
+from unicon.train.scoring.evaluation import Evaluation, summarise
 from unicon.train.scoring.evaluation_clips import ClipSource
 from unicon.train.scoring.evaluation_report import write_json
+from unicon.train.specialists.plan import read_plan
+from unicon.train.specialists.specialists_run import train_specialists
 
 SCORES_FILE = "scores.json"
 SPLITS = ("train", "test")
@@ -106,30 +111,81 @@ def _train_and_score(
     library: ClipLibrary, out: Path, candidate: Candidate, config: ComparisonConfig, console: Console
 ) -> Outcome | None:
     """Return the outcome, or None where someone stopped it."""
-    recipe, folder = candidate.recipe, out / candidate.name
-    learned = choose_clips(library, recipe.dataset)
+    folder = out / candidate.name
+    learned = choose_clips(library, candidate.recipe.dataset)
+    by_specialists = candidate.recipe.specialists is not None
+    train = _train_specialists if by_specialists else _train
+    trained = train(folder, candidate, learned, config, console)
+    if trained is None:
+        return None
+    scores: dict[str, dict[str, float] | None] = {}
+    for split, infos in zip(SPLITS, (learned.infos, _test_infos(library, candidate)), strict=True):
+        source = ClipSource(f"{config.dataset}, split {split}", tuple(infos), library.folder)
+        done = _score(trained, learned, source, candidate, config) if infos else None
+        scores[split] = summarise(done)[0].figures if done else None
+    outcome = Outcome(
+        name=candidate.name,
+        minutes=trained.seconds / 60.0,
+        million_samples=trained.samples / 1e6,
+        train=scores["train"],
+        test=scores["test"],
+        curve=read_curve(trained.folder),
+    )
+    settings = recipe_text(candidate.recipe)
+    write_json(folder / SCORES_FILE, {"settings": settings, **outcome.as_json()})
+    return outcome
+
+
+class _Trained(NamedTuple):
+    """What a training ended with."""
+
+    folder: Path
+    """Of the run whose networks are scored."""
+    recipe: Recipe
+    """That run's."""
+    weights: PolicyWeights
+    seconds: float
+    """Of all stages."""
+    samples: int
+
+
+def _train(
+    folder: Path, candidate: Candidate, learned: Dataset, config: ComparisonConfig, console: Console
+) -> _Trained | None:
+    recipe = candidate.recipe
     environment = as_seen(TrackingEnvironment(learned, recipe.environment, say=console.print))
     learner = Learner(environment, recipe)
     _open(folder, candidate)
     run = TrainingRun(learner, folder, console, _curve(candidate, learned, config))
     if run.train() == "stopped":
         return None
-    weights = export_weights(learner.network)
-    scores: dict[str, dict[str, float] | None] = {}
-    for split, infos in zip(SPLITS, (learned.infos, _test_infos(library, candidate)), strict=True):
-        source = ClipSource(f"{config.dataset}, split {split}", tuple(infos), library.folder)
-        done = score_network(recipe, weights, learned, source, candidate.name, config.jobs) if infos else None
-        scores[split] = summarise(done)[0].figures if done else None
-    outcome = Outcome(
-        name=candidate.name,
-        minutes=run.seconds / 60.0,
-        million_samples=learner.samples / 1e6,
-        train=scores["train"],
-        test=scores["test"],
-        curve=read_curve(folder),
-    )
-    write_json(folder / SCORES_FILE, {"settings": recipe_text(recipe), **outcome.as_json()})
-    return outcome
+    return _Trained(folder, recipe, export_weights(learner.network), run.seconds, learner.samples)
+
+
+def _train_specialists(
+    folder: Path, candidate: Candidate, learned: Dataset, config: ComparisonConfig, console: Console
+) -> _Trained | None:
+    resume = (folder / CONFIG_FILE).exists()
+    if resume:
+        _check_settings(folder, (folder / CONFIG_FILE).read_text(encoding="utf-8"), candidate)
+    library = learned.library.folder
+    if train_specialists(library, folder, candidate.recipe, console, resume) == "stopped":
+        return None
+    plan = read_plan(folder)
+    last = plan.last_run
+    assert last is not None
+    recipe = read_recipe(last / CONFIG_FILE)
+    # the generalist was scored; that stage trains nothing
+    runs = [folder / stage for stage in plan.done if (folder / stage).is_dir()]
+    samples = sum(read_numbers(checkpoints_of(run)[-1]).samples for run in runs)
+    seconds = sum(result.seconds for result in plan.done.values())
+    return _Trained(last, recipe, read_trained(last, candidate.name)[1], seconds, samples)
+
+
+def _score(
+    trained: _Trained, learned: Dataset, source: ClipSource, candidate: Candidate, config: ComparisonConfig
+) -> Evaluation | None:
+    return score_network(trained.recipe, trained.weights, learned, source, candidate.name, config.jobs)
 
 
 def _open(folder: Path, candidate: Candidate) -> None:
