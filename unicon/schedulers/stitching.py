@@ -1,12 +1,7 @@
 """Stitching: clips one after the other, each going on where the last one ended.
 
 A clip is turned and shifted along the ground so that it begins in the place and heading where the path
-ends. Over a transition of T seconds the end of the path, going on with its velocities, is blended into
-the beginning of the clip, going back with its own:
-
-    pose(t) = interpolate(end + t v_end, start - (T - t) v_start, s(t / T)),   s(x) = x^2 (3 - 2x)
-
-The clip's start is set ahead by T (v_end + v_start) / 2, so that the root neither stops nor jumps. When
+ends, and what it differs by fades away over a transition (``inertialization.py``). When
 nothing is queued, the path goes on with what the stitcher is told to ask for the next clip; where that has
 none, it goes over into a standing pose and stays there.
 """
@@ -20,10 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from unicon import rotations, state
+from unicon import state
 from unicon.errors import UniconError
 from unicon.humanoid import HUMANOID
-from unicon.motion.clip import RATE_HZ, Clip, clip_from_poses, continuous_signs
+from unicon.motion.clip import RATE_HZ, Clip, continuous_signs
+from unicon.schedulers.inertialization import begin_after
 from unicon.state import CharacterState, differentiate
 from unicon.target_frames import NS_PER_S
 
@@ -38,7 +34,7 @@ class StitcherConfig:
 
     window: int = 8
     """Frames in each window that is sent."""
-    transition_s: float = 0.5
+    transition_s: float = 0.8
     """Length of a transition where none is given, and of that into standing."""
 
 
@@ -52,7 +48,7 @@ class Window(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """One clip's part of the path, its transition included; an empty name is standing."""
+    """One clip's part of the path; an empty name is standing."""
 
     name: str
     start: int
@@ -145,7 +141,8 @@ class Stitcher:
         if entry := self._take_next():
             self._append(entry.clip.frames, entry.transition_s, entry.clip.name)
         elif self._segments[-1].name:
-            self._append(_standing_clip().frames, self.config.transition_s, "")
+            seconds = self.config.transition_s
+            self._append(_standing(seconds), seconds, "")
         else:
             stop = self._stop + self.config.window
             more = state.stack([state.hold(self._path[-1])] * self.config.window)
@@ -159,13 +156,9 @@ class Stitcher:
         return None if clip is None else _Queued(clip, self.config.transition_s)
 
     def _append(self, frames: CharacterState, transition_s: float, name: str) -> None:
-        count = round(transition_s * RATE_HZ)
-        end = self._path[-1]
-        placed = place_after(frames, end, count / RATE_HZ)
-        bridge = bridge_poses(end, placed[0], count)
-        parts = [self._path[-2:], *([bridge] if bridge is not None else []), placed]
+        placed = begin_after(frames, self._path[-1], transition_s)
         start = self._stop
-        joined = _with_velocities(state.concatenate(parts))
+        joined = _with_velocities(state.concatenate([self._path[-2:], placed]))
         self._path = state.concatenate([self._path[:-1], joined[1:]])
         self._segments.append(Segment(name, start, self._stop))
 
@@ -174,29 +167,6 @@ class Stitcher:
         if surplus > KEPT_FRAMES:
             self._path, self._first = self._path[surplus:], self._first + surplus
             self._segments = [s for s in self._segments if s.stop > self._first]
-
-
-def place_after(frames: CharacterState, end: CharacterState, gap_s: float) -> CharacterState:
-    """Return the frames turned to the heading of ``end`` and set where it gets to in ``gap_s``."""
-    first = frames[0]
-    turn = rotations.heading_angle(end.root_quat_w) - rotations.heading_angle(first.root_quat_w)
-    turned = state.move(frames, np.full(frames.batch_shape, turn), np.zeros(3))
-    ahead_w = 0.5 * gap_s * (end.root_lin_vel_w + turned.root_lin_vel_w[0])
-    offset_w = end.root_pos_w + ahead_w - turned.root_pos_w[0]
-    if gap_s == 0.0:
-        offset_w = end.root_pos_w + end.root_lin_vel_w / RATE_HZ - turned.root_pos_w[0]
-    return state.move(turned, np.zeros(frames.batch_shape), offset_w * np.array([1.0, 1.0, 0.0]))
-
-
-def bridge_poses(end: CharacterState, start: CharacterState, count: int) -> CharacterState | None:
-    """Return ``count - 1`` frames between ``end`` and ``start``; None where there is no room for any."""
-    if count < 2:
-        return None
-    steps = np.arange(1, count)
-    share = steps / count
-    ahead = state.extrapolate(_repeat(end, count - 1), steps / RATE_HZ)
-    back = state.extrapolate(_repeat(start, count - 1), (steps - count) / RATE_HZ)
-    return state.interpolate(ahead, back, share * share * (3.0 - 2.0 * share))
 
 
 def _repeat(frame: CharacterState, count: int) -> CharacterState:
@@ -208,6 +178,6 @@ def _with_velocities(frames: CharacterState) -> CharacterState:
     return differentiate(frames.root_pos_w, quat, frames.joint_pos, RATE_HZ)
 
 
-def _standing_clip() -> Clip:
-    rest = _repeat(HUMANOID.rest_state(), 3)
-    return clip_from_poses("", rest.root_pos_w, rest.root_quat_w, rest.joint_pos)
+def _standing(seconds: float) -> CharacterState:
+    """Return so long a time in the rest pose, and a little more."""
+    return _repeat(HUMANOID.rest_state(), round(seconds * RATE_HZ) + 3)

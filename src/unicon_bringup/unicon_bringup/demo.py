@@ -23,6 +23,7 @@ from unicon.render.gl import NoGLError
 from unicon.render.scene import Picture
 from unicon.render.show import RenderConfig, render
 from unicon.render.take import take_from_bag
+from unicon.schedulers.stitching import StitcherConfig
 from unicon_bringup.graph import GraphConfig
 from unicon_bringup.session import GraphSession
 
@@ -38,7 +39,7 @@ class DemoConfig:
     """Motions to play, one after the other."""
     seconds: float = 20.0
     """How long the avatar lives."""
-    transition_s: float = 0.5
+    transition_s: float = StitcherConfig.transition_s
     """Length of the transition into each motion [s]."""
     avatar: str = "demo"
     """Namespace of the avatar."""
