@@ -1,0 +1,141 @@
+"""The keyboard scheduler: commands in, target frames at 60 Hz out, as far ahead as is needed and no farther.
+
+Frame k is due at ``start + k/60``. Frames are made one at a time just before they are sent: with a window of
+two, a command shows in the second frame of the next message. A command that is not repeated is dropped after
+``timeout_s``, and the character stops.
+
+Nothing is fed back from the simulation unless asked for:
+
+    feedback    the generator's place and heading are drawn to the avatar's by this share in every frame
+    wait_m      the commanded velocity falls from whole to nothing as the avatar lags from the first to the
+                second of these distances
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from unicon import rotations, state
+from unicon.motion.clip_index import RATE_HZ
+from unicon.schedulers.keyboard.command import STAND, LocomotionCommand, clamp
+from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator, PoseNetwork
+from unicon.schedulers.pfnn.layout import GAITS, PRESENT
+from unicon.schedulers.pfnn.network_card import PhaseNetworkCard
+from unicon.schedulers.stitching import Window
+from unicon.state import CharacterState
+from unicon.target_frames import NS_PER_S
+
+
+@dataclass(frozen=True)
+class KeyboardConfig:
+    """How commands become frames."""
+
+    window: int = 2
+    """Frames in each window that is sent; a command shows so many frames later."""
+    timeout_s: float = 0.5
+    """A command holds for so long if it is not repeated."""
+    feedback: float = 0.0
+    """Share of the distance to the simulated avatar that is made up in every frame; 0: open loop."""
+    wait_m: tuple[float, float] | None = None
+    """Lags of the avatar at which the reference begins to slow down, and at which it stops; none: never."""
+    generator: GeneratorConfig = field(default_factory=GeneratorConfig)
+    """How poses are made."""
+
+
+class Lag(NamedTuple):
+    """Where the simulated avatar is, seen from the frame that it should follow."""
+
+    offset_w: np.ndarray
+    """``(2,)`` [m]."""
+    turn: float
+    """[rad]."""
+
+
+class KeyboardScheduler:
+    """A character steered by commands, as windows of frames by time."""
+
+    def __init__(
+        self, network: PoseNetwork, card: PhaseNetworkCard, config: KeyboardConfig, start_ns: int
+    ) -> None:
+        self.config, self.card = config, card
+        self.generator = PoseGenerator(network, config.generator)
+        self._start_ns = start_ns
+        self._command, self._until_ns = STAND, start_ns
+        standing = self.generator.state
+        self._frames = [standing] * (config.window + 1)
+        self._first = 0
+        self._lag: Lag | None = None
+
+    def command(self, command: LocomotionCommand, time_ns: int) -> tuple[str, ...]:
+        """Take a command; return what of it was too much and was clamped, in words."""
+        clamped = clamp(command, self.card)
+        self._command = clamped.command
+        self._until_ns = time_ns + round(self.config.timeout_s * NS_PER_S)
+        return clamped.changes
+
+    def follow(self, avatar: CharacterState, time_ns: int) -> None:
+        """Take the avatar's state at a time, for feedback and for waiting."""
+        index = round((time_ns - self._start_ns) * RATE_HZ / NS_PER_S) - self._first
+        frame = self._frames[int(np.clip(index, 0, len(self._frames) - 1))]
+        turn = rotations.heading_angle(avatar.root_quat_w) - rotations.heading_angle(frame.root_quat_w)
+        offset_w = (avatar.root_pos_w - frame.root_pos_w)[:2]
+        self._lag = Lag(offset_w, float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi))
+
+    def place(self, pos_w: np.ndarray, heading: float) -> None:
+        """Go on from another place and heading on the ground: frames not sent yet begin there."""
+        turn = heading - self.generator.heading
+        before = self.generator.state.root_pos_w
+        self.generator.place(pos_w, heading)
+        moved = [state.move(frame, np.array(0.0), -_flat(before)) for frame in self._frames]
+        self._frames = [state.move(frame, np.array(turn), _flat(np.asarray(pos_w))) for frame in moved]
+        self._lag = None
+
+    def next_frames(self, time_ns: int) -> Window:
+        """Return the window of frames that begins one frame after ``time_ns``."""
+        index = round((time_ns - self._start_ns) * RATE_HZ / NS_PER_S) + 1
+        index = max(index, self._first)
+        while self._first + len(self._frames) < index + self.config.window:
+            due_ns = self._start_ns + round((self._first + len(self._frames)) * NS_PER_S / RATE_HZ)
+            self._frames.append(self._make(due_ns))
+        # one frame of the past is kept for the avatar's state that comes late
+        kept = max(index - 1 - self._first, 0)
+        self._frames, self._first = self._frames[kept:], self._first + kept
+        first = index - self._first
+        frames = state.stack(self._frames[first : first + self.config.window])
+        return Window(self._start_ns + round(index * NS_PER_S / RATE_HZ), frames)
+
+    @property
+    def playing(self) -> str:
+        """The gait that it goes in."""
+        return GAITS[int(self.generator.path.samples().gait[PRESENT].argmax())]
+
+    def _make(self, due_ns: int) -> CharacterState:
+        """Make a frame, by the command that holds then."""
+        command = self._command if due_ns <= self._until_ns + NS_PER_S / RATE_HZ else STAND
+        if self._lag is not None:
+            command = self._waited(command, float(np.linalg.norm(self._lag.offset_w)))
+            self._draw_to_avatar(self._lag)
+        return self.generator.step(command)
+
+    def _waited(self, command: LocomotionCommand, lag_m: float) -> LocomotionCommand:
+        if self.config.wait_m is None:
+            return command
+        share = float(np.interp(lag_m, self.config.wait_m, (1.0, 0.0)))
+        x, y = command.velocity_h
+        return replace(command, velocity_h=(share * x, share * y))
+
+    def _draw_to_avatar(self, lag: Lag) -> None:
+        share = self.config.feedback
+        if share <= 0.0:
+            return
+        generator = self.generator
+        pos_w = generator.state.root_pos_w[:2] + share * lag.offset_w
+        generator.place(pos_w, generator.heading + share * lag.turn)
+        self._lag = Lag((1.0 - share) * lag.offset_w, (1.0 - share) * lag.turn)
+
+
+def _flat(pos_w: np.ndarray) -> np.ndarray:
+    return np.array([pos_w[0], pos_w[1], 0.0])
