@@ -1,0 +1,49 @@
+"""Tests for phases.py."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from unicon.train.pfnn.phases import STEP_S, label_phases, touch_downs
+
+
+def contacts(events: list[tuple[int, int]], count: int, stance: int = 20) -> np.ndarray:
+    """Feet that come down at frames and stand for a while; both stand at first."""
+    contact = np.zeros((count, 2), bool)
+    contact[:5] = True
+    for frame, foot in events:
+        contact[frame : frame + stance, foot] = True
+    return contact
+
+
+def test_a_foot_that_stands_at_first_has_not_come_down():
+    assert touch_downs(contacts([(40, 1), (70, 0)], 100)) == [(40, 1), (70, 0)]
+
+
+def test_the_phase_is_0_at_the_left_and_pi_at_the_right_touch_down_and_even_between():
+    phase = label_phases(contacts([(60, 0), (90, 1), (120, 0)], 150))
+    assert phase[60] % (2 * np.pi) == pytest.approx(0.0)
+    assert phase[90] % (2 * np.pi) == pytest.approx(np.pi)
+    assert phase[75] - phase[60] == pytest.approx(np.pi / 2)
+    assert phase[120] - phase[60] == pytest.approx(2 * np.pi)
+
+
+def test_it_waits_in_a_rest_and_goes_on_just_before_the_next_step():
+    phase = label_phases(contacts([(60, 0), (240, 1)], 300))
+    lift = 240 - round(STEP_S * 60)
+    assert np.allclose(phase[60 : lift + 1], phase[60])
+    assert phase[240] - phase[lift] == pytest.approx(np.pi)
+    assert np.allclose(phase[240:], phase[240])
+
+
+def test_two_steps_of_one_foot_are_a_whole_cycle():
+    phase = label_phases(contacts([(60, 0), (110, 0)], 150))
+    assert phase[110] - phase[60] == pytest.approx(2 * np.pi)
+
+
+def test_the_phase_never_falls_and_standing_has_none():
+    rng = np.random.default_rng(3)
+    contact = rng.random((200, 2)) < 0.5
+    assert np.all(np.diff(label_phases(contact)) >= 0.0)
+    assert not label_phases(np.ones((50, 2), bool)).any()
