@@ -32,9 +32,9 @@ _STAND = GAITS.index("stand")
 class PathConfig:
     """How fast the path ahead follows the command."""
 
-    position_bias: float = 1.0
+    position_bias: float = 3.0
     """Above 1 the near future follows the command sooner, below 1 later."""
-    facing_bias: float = 1.5
+    facing_bias: float = 2.0
     """Likewise, of the facing."""
     turn_s: float = 0.4
     """Time in which a facing that is asked for shall be reached from near [s]."""

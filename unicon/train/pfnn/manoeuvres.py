@@ -25,10 +25,14 @@ from unicon.train.pfnn.takes import TakeEntry, TakeTable, frames_of
 WALK_BENDS = (0.0, 25.0, -25.0, 50.0, -50.0, 80.0, -80.0)
 RUN_BENDS = (0.0, 30.0, -30.0, 55.0, -55.0)
 REVERSE_BENDS = (0.0, 30.0, -30.0)
-SPEEDS = (0.8, 0.9, 1.0, 1.1, 1.2)
-REVERSE_SPEEDS = (0.5, 0.65, 0.8)
+SPEEDS = (0.65, 0.75, 0.85, 1.0, 1.0, 1.1, 1.2)
+DRAWS = 2
+"""How many speeds each bend is made at."""
+REVERSE_SPEEDS = (0.35, 0.5, 0.65, 0.8)
 RUN_SPEEDS = (0.75, 0.9, 1.0)
 CAPTURED_SPEEDS = (0.8, 0.9, 1.0, 1.1, 1.2)
+WALK_S, RUN_S, STEP_S = 0.9, 1.3, 0.5
+"""Transitions between standing and a walk, a run and a step: nobody sets off at once."""
 LOOP_S = 4.0
 WALK_BEFORE_RUN_S = 1.5
 _WANDER_S = 8.0
@@ -82,15 +86,15 @@ class ManoeuvreMaker:
 
     def _walks(self) -> Iterator[Manoeuvre]:
         for entry, frames in self._all(self._table.walking):
-            for bent in WALK_BENDS:
+            for bent in WALK_BENDS * DRAWS:
                 speed = self._draw(SPEEDS)
                 name = f"{entry.clip} bent {bent:+g} x{speed:g}"
-                yield Manoeuvre(name, "walking", self._between_stands(_faster(frames, speed)), 0.7, bent)
-            for bent in REVERSE_BENDS:
+                yield Manoeuvre(name, "walking", self._between_stands(_faster(frames, speed)), WALK_S, bent)
+            for bent in REVERSE_BENDS * DRAWS:
                 speed = self._draw(REVERSE_SPEEDS)
                 name = f"{entry.clip} reversed bent {bent:+g} x{speed:g}"
                 back = _faster(reverse(frames), speed)
-                yield Manoeuvre(name, "backward", self._between_stands(back), 0.7, bent)
+                yield Manoeuvre(name, "backward", self._between_stands(back), WALK_S, bent)
 
     def _runs(self) -> Iterator[Manoeuvre]:
         """Yield runs out of a walk and into one, and straight from standing, in turns."""
@@ -101,9 +105,9 @@ class ManoeuvreMaker:
                 name, run = f"{entry.clip} bent {bent:+g} x{speed:g}", _faster(frames, speed)
                 walk = walks[self._rng.integers(len(walks))]
                 if index % 2 == 0:
-                    yield Manoeuvre(name, "running", self._between_stands(walk, run, walk), 0.7, bent)
+                    yield Manoeuvre(name, "running", self._between_stands(walk, run, walk), WALK_S, bent)
                 else:
-                    yield Manoeuvre(name, "running", self._between_stands(run), 1.0, bent)
+                    yield Manoeuvre(name, "running", self._between_stands(run), RUN_S, bent)
 
     def _wandering(self) -> Iterator[Manoeuvre]:
         length = round(_WANDER_S * RATE_HZ)
@@ -111,13 +115,13 @@ class ManoeuvreMaker:
             for start in range(0, frames.batch_shape[0] - length // 2, length // 2):
                 part = frames[start : start + length]
                 name = f"{entry.clip} from {start / RATE_HZ:g} s"
-                yield Manoeuvre(name, "wandering", self._between_stands(part), 0.7)
+                yield Manoeuvre(name, "wandering", self._between_stands(part), WALK_S)
 
     def _captured(self, kind: str, entries: tuple[TakeEntry, ...]) -> Iterator[Manoeuvre]:
         for entry, frames in self._all(entries):
             for speed in CAPTURED_SPEEDS:
                 parts = self._between_stands(_faster(frames, speed))
-                yield Manoeuvre(f"{entry.clip} x{speed:g}", kind, parts, 0.5)
+                yield Manoeuvre(f"{entry.clip} x{speed:g}", kind, parts, STEP_S)
 
     def _all(self, entries: tuple[TakeEntry, ...]) -> Iterator[tuple[TakeEntry, CharacterState]]:
         """Yield the takes that there are."""
