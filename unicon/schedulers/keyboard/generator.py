@@ -22,6 +22,7 @@ from unicon.motion.clip_index import RATE_HZ
 from unicon.observation import observe
 from unicon.schedulers.keyboard.command import LocomotionCommand
 from unicon.schedulers.keyboard.path import HERE, PathConfig, SteeredPath
+from unicon.schedulers.keyboard.steering import Steering, SteeringConfig
 from unicon.schedulers.pfnn.layout import pack_input, unpack_output
 from unicon.state import CharacterState, move
 
@@ -41,6 +42,7 @@ class GeneratorConfig:
     """How poses are made."""
 
     path: PathConfig = field(default_factory=PathConfig)
+    steering: SteeringConfig = field(default_factory=SteeringConfig)
     largest_turn: float = 2.0
     """Turn rate with which a facing that is asked for is approached [rad/s]."""
 
@@ -58,6 +60,7 @@ class PoseGenerator:
         heading = float(rotations.heading_angle(state.root_quat_w))
         self.state, self.phase, self.contacts = state, 0.0, np.zeros(4)
         self.path = SteeredPath(self.config.path, state.root_pos_w[:2], heading, self.config.largest_turn)
+        self.steering = Steering(self.config.steering, heading)
 
     @property
     def heading(self) -> float:
@@ -72,6 +75,7 @@ class PoseGenerator:
             heading: where it shall face [rad].
         """
         turn = np.array(heading - self.heading)
+        self.steering.turn(float(turn))
         turned = move(self.state, turn, np.zeros(3))
         offset = np.append(np.asarray(pos_w) - turned.root_pos_w[:2], 0.0)
         self.state = move(turned, np.array(0.0), offset)
@@ -79,7 +83,7 @@ class PoseGenerator:
 
     def step(self, command: LocomotionCommand) -> CharacterState:
         """Make the next frame, and return it."""
-        self.path.steer(command)
+        self.path.steer(self.steering.steer(command, self.heading))
         x = pack_input(self.path.samples(), observe(self.state, forward_kinematics(self.state)))
         y = self.network.predict(x, self.phase)
         if not np.isfinite(y).all():
@@ -88,6 +92,7 @@ class PoseGenerator:
         amount = (1.0 - self.path.standing) ** _STAND_POWER
         turn = amount * float(parts["turn_rate"][0]) / RATE_HZ
         step_h = amount * parts["root_vel_h"] / RATE_HZ
+        self.steering.observe(step_h * RATE_HZ)
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         step_w = np.array([cos * step_h[0] - sin * step_h[1], sin * step_h[0] + cos * step_h[1]])
         self.path.advance(step_w, turn, parts["path_pos_h"], parts["path_facing_h"])

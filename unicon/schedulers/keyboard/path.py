@@ -60,15 +60,11 @@ class SteeredPath:
     def steer(self, command: LocomotionCommand) -> None:
         """Draw what lies ahead to what a command asks for."""
         here = self.heading[HERE]
-        rate = command.turn_rate
+        wanted = here + command.turn_rate * _AHEAD_SHARE * (HERE / RATE_HZ)
         if command.facing_w is not None:
-            off = np.remainder(command.facing_w - here + np.pi, 2.0 * np.pi) - np.pi
-            rate = float(np.clip(off / self._config.turn_s, -self._largest_turn, self._largest_turn))
-        wanted = here + rate * _AHEAD_SHARE * (HERE / RATE_HZ)
-        if command.facing_w is not None:
-            wanted = here + np.sign(off) * np.minimum(np.abs(wanted - here), abs(off))
-        turned = 1.0 - (1.0 - _AHEAD_SHARE) ** self._config.facing_bias
+            wanted = self._towards(command.facing_w, wanted)
         ahead = self.heading[HERE + 1 :]
+        turned = 1.0 - (1.0 - _AHEAD_SHARE) ** self._config.facing_bias
         self.heading[HERE + 1 :] = ahead + turned * (wanted - ahead)
         cos, sin = np.cos(self.heading[HERE + 1 :]), np.sin(self.heading[HERE + 1 :])
         forward, left = command.velocity_h
@@ -119,6 +115,14 @@ class SteeredPath:
         turn = heading - self.heading[HERE]
         self.pos_w = np.asarray(pos_w) + _rotated(self.pos_w - self.pos_w[HERE], turn)
         self.heading = self.heading + turn
+
+    def _towards(self, facing: float, turning: np.ndarray) -> np.ndarray:
+        """Return the headings ahead ``(60,)`` that approach a facing the shorter way, and go on turning."""
+        here = self.heading[HERE]
+        off = np.remainder(facing - here + np.pi, 2.0 * np.pi) - np.pi
+        rate = min(abs(off) / self._config.turn_s, self._largest_turn)
+        near = np.minimum(rate * _AHEAD_SHARE * (HERE / RATE_HZ), abs(off))
+        return turning + np.sign(off) * near
 
     def _set_gaits_ahead(self) -> None:
         """Set the gaits from the present on to those of the pace there."""
