@@ -33,7 +33,7 @@ FIRST_SPACE_BYTES = 3 * 10**9
 APT_LINE = "sudo apt install g++ python3-dev python3-venv"
 GL_PACKAGES = ("libegl1", "libgl1-mesa-dri")
 BUILD_INPUTS = (
-    *("package.xml", "CMakeLists.txt", "*.msg", "*.srv"),
+    *("package.xml", "CMakeLists.txt", "*.msg", "*.srv", "*.action"),
     *("setup.py", "setup.cfg", "*.launch.py", "*.yaml"),
 )
 

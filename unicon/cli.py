@@ -16,6 +16,7 @@ from unicon.render.show import RenderConfig
 from unicon.tool_commands import FetchCmu, MotionsExport, MotionsInspect, find_clip
 from unicon.train.comparison_commands import Compare
 from unicon.train.evaluation_commands import Evaluate, Robustness
+from unicon.train.pfnn_commands import PfnnConvert, PfnnTrain
 from unicon.train.train_commands import Export, Train
 
 if TYPE_CHECKING:
@@ -185,6 +186,23 @@ class MotionsCommand:
         return self.command.run(console)
 
 
+Pfnn = (
+    Annotated[PfnnTrain, tyro.conf.subcommand("train")]
+    | Annotated[PfnnConvert, tyro.conf.subcommand("convert")]
+)
+
+
+@dataclass(frozen=True)
+class PfnnCommand:
+    """The network of the keyboard scheduler: train, convert."""
+
+    command: Annotated[Pfnn, tyro.conf.arg(name="")]
+
+    def run(self, console: Console) -> int:
+        """Run the command."""
+        return self.command.run(console)
+
+
 Command = (
     Annotated[Doctor, tyro.conf.subcommand("doctor")]
     | Annotated[Render, tyro.conf.subcommand("render")]
@@ -192,6 +210,7 @@ Command = (
     | Annotated[MotionsCommand, tyro.conf.subcommand("motions")]
     | Annotated[Train, tyro.conf.subcommand("train")]
     | Annotated[Export, tyro.conf.subcommand("export")]
+    | Annotated[PfnnCommand, tyro.conf.subcommand("pfnn")]
     | Annotated[Evaluate, tyro.conf.subcommand("evaluate")]
     | Annotated[Robustness, tyro.conf.subcommand("robustness")]
     | Annotated[Compare, tyro.conf.subcommand("compare")]

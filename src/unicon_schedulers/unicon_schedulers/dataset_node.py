@@ -10,7 +10,7 @@ from unicon.schedulers.stitching import StitcherConfig
 from unicon_msgs.srv import Play
 from unicon_ros.parameters import Parameter
 from unicon_ros.process import run_node
-from unicon_schedulers.scheduler_node import LIBRARY, WINDOW, SchedulerNode
+from unicon_schedulers.scheduler_node import LIBRARY, TRANSITION, WINDOW, SchedulerNode
 
 PARAMETERS = (
     LIBRARY,
@@ -18,7 +18,7 @@ PARAMETERS = (
     Parameter("speed", 1.0, "how many times as fast as captured", "", MIN_SPEED, MAX_SPEED),
     Parameter("loop", True, "one clip after the other without end; false: one clip, then it stands"),
     Parameter("seed", 0, "seed of the draws", "", 0, 999_999),
-    Parameter("transition_s", 0.5, "length of the transition into each clip", "s", 0.0, 5.0),
+    TRANSITION,
     WINDOW,
     Parameter("source", "dataset", "name under which the target frames are published"),
 )

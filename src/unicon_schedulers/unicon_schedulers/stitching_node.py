@@ -10,12 +10,12 @@ from unicon_msgs.msg import MotionInfo
 from unicon_msgs.srv import ListMotions, QueueMotion
 from unicon_ros.parameters import Parameter
 from unicon_ros.process import run_node
-from unicon_schedulers.scheduler_node import LIBRARY, WINDOW, SchedulerNode
+from unicon_schedulers.scheduler_node import LIBRARY, TRANSITION, WINDOW, SchedulerNode
 
 PARAMETERS = (
     LIBRARY,
     Parameter("queue", [""], "motions to begin with"),
-    Parameter("transition_s", 0.5, "length of a transition where none is given", "s", 0.0, 5.0),
+    TRANSITION,
     WINDOW,
     Parameter("source", "stitching", "name under which the target frames are published"),
 )

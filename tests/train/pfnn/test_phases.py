@@ -23,23 +23,32 @@ def test_a_foot_that_stands_at_first_has_not_come_down():
 
 def test_the_phase_is_0_at_the_left_and_pi_at_the_right_touch_down_and_even_between():
     phase = label_phases(contacts([(60, 0), (90, 1), (120, 0)], 150))
-    assert phase[60] % (2 * np.pi) == pytest.approx(0.0)
+    assert np.sin(phase[60]) == pytest.approx(0.0, abs=0.12)
+    assert np.cos(phase[60]) > 0.99
     assert phase[90] % (2 * np.pi) == pytest.approx(np.pi)
-    assert phase[75] - phase[60] == pytest.approx(np.pi / 2)
-    assert phase[120] - phase[60] == pytest.approx(2 * np.pi)
+    assert phase[90] - phase[75] == pytest.approx(np.pi / 2, abs=1e-3)
 
 
 def test_it_waits_in_a_rest_and_goes_on_just_before_the_next_step():
     phase = label_phases(contacts([(60, 0), (240, 1)], 300))
     lift = 240 - round(STEP_S * 60)
-    assert np.allclose(phase[60 : lift + 1], phase[60])
-    assert phase[240] - phase[lift] == pytest.approx(np.pi)
-    assert np.allclose(phase[240:], phase[240])
+    assert np.allclose(phase[80 : lift - 15], phase[80])
+    assert phase[260] - phase[lift - 20] == pytest.approx(np.pi)
+    assert np.allclose(phase[260:], phase[260])
 
 
 def test_two_steps_of_one_foot_are_a_whole_cycle():
     phase = label_phases(contacts([(60, 0), (110, 0)], 150))
-    assert phase[110] - phase[60] == pytest.approx(2 * np.pi)
+    assert phase[-1] - phase[0] == pytest.approx(2 * np.pi + np.pi)
+
+
+def test_both_feet_that_come_to_rest_at_once_make_one_step():
+    assert touch_downs(contacts([(60, 0), (64, 1)], 100)) == [(60, 0)]
+
+
+def test_the_phase_goes_on_smoothly():
+    phase = label_phases(contacts([(60, 0), (90, 1), (120, 0), (300, 1)], 400))
+    assert np.abs(np.diff(phase, n=2)).max() < 0.02
 
 
 def test_the_phase_never_falls_and_standing_has_none():

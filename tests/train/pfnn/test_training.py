@@ -12,7 +12,7 @@ from unicon.train.pfnn.training import NetworkTrainer
 from unicon.train.pfnn.training_config import LossWeights, NetworkTrainingConfig
 
 CONFIG = NetworkTrainingConfig(hidden=24, minibatch=64, learning_rate=3e-3)
-PLAIN = replace(CONFIG, dropout=0.0, pose_noise=0.0, l1=0.0)
+PLAIN = replace(CONFIG, dropout=0.0, path_dropout=0.0, pose_noise=0.0, l1=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -65,11 +65,14 @@ def test_the_same_seed_gives_the_same_and_another_something_else(data):
 
 
 def test_dropout_keeps_the_mean_and_noise_moves_the_pose_alone(data):
-    trainer = NetworkTrainer(data, replace(CONFIG, dropout=0.25, pose_noise=0.2, pose_scale=0.5))
-    dropped = trainer._drop(torch.ones(100, 200))
-    assert dropped.unique().tolist() == pytest.approx([0.0, 4 / 3])
-    assert dropped.mean() == pytest.approx(1.0, abs=0.02)
-    noisy = trainer._add_noise(torch.zeros(500, 305))
+    config = replace(CONFIG, dropout=0.25, path_dropout=0.5, pose_noise=0.0)
+    dropped = NetworkTrainer(data, config)._disturb(torch.ones(400, 305))
+    path, pose = dropped[:, :108], dropped[:, 108:]
+    assert path.unique().tolist() == pytest.approx([0.0, 2.0])
+    assert pose.unique().tolist() == pytest.approx([0.0, 4 / 3])
+    assert (float(path.mean()), float(pose.mean())) == pytest.approx((1.0, 1.0), abs=0.02)
+    config = replace(PLAIN, pose_noise=0.2, pose_scale=0.5)
+    noisy = NetworkTrainer(data, config)._disturb(torch.zeros(500, 305))
     assert not noisy[:, :108].any()
     assert noisy[:, 108:].std() == pytest.approx(0.1, rel=0.02)
 

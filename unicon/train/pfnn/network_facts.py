@@ -45,7 +45,7 @@ def training_in_words(config: NetworkTrainingConfig, steps: int, seconds: float)
     return (
         f"{steps * config.minibatch / 1e6:.2f} M samples in {steps} steps of {config.minibatch}, "
         f"{seconds / 60.0:.1f} min; Adam {config.learning_rate:g} to {config.learning_rate_end:g}, "
-        f"dropout {config.dropout:g}, noise {config.pose_noise:g}"
+        f"dropout {config.dropout:g} (path {config.path_dropout:g}), noise {config.pose_noise:g}"
     )
 
 

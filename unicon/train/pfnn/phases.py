@@ -3,7 +3,9 @@
 The phase is 0 when the left foot touches down and pi when the right foot does; in between it rises evenly.
 Of two touch-downs of the same foot in a row the second is a whole cycle on. Where feet rest for longer than
 a slow step, as in standing, the phase waits at the last touch-down and goes on in the ``STEP_S`` before the
-next: that is when the foot is lifted for it. After the last it stays.
+next: that is when the foot is lifted for it. After the last it stays. Touch-downs less than ``NEAREST_S``
+after another are none of a step, as when both feet come to rest, and are left out; the corners that are left
+are rounded.
 """
 
 from __future__ import annotations
@@ -11,11 +13,15 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from unicon.motion.clip_index import RATE_HZ
 
 SLOWEST_STEP_S = 0.9
 """A step that takes longer begins with a rest."""
+NEAREST_S = 0.15
+"""Two touch-downs are at least so far apart."""
+ROUND_FRAMES = 4.0
 STEP_S = 0.5
 """Duration of a step after a rest."""
 
@@ -27,7 +33,11 @@ def touch_downs(contact: np.ndarray) -> list[tuple[int, int]]:
         contact: when each foot stands ``(T, 2)``; a foot that stands at first has not come down.
     """
     frames, feet = np.nonzero(contact[1:] & ~contact[:-1])
-    return sorted((int(frame) + 1, int(foot)) for frame, foot in zip(frames, feet, strict=True))
+    events: list[tuple[int, int]] = []
+    for frame, foot in sorted(zip(frames.tolist(), feet.tolist(), strict=True)):
+        if not events or frame + 1 - events[-1][0] >= NEAREST_S * RATE_HZ:
+            events.append((frame + 1, foot))
+    return events
 
 
 def label_phases(contact: np.ndarray) -> np.ndarray:
@@ -55,7 +65,8 @@ def label_phases(contact: np.ndarray) -> np.ndarray:
         before = frame, foot
     first = values[0]
     offset = -2.0 * math.pi * math.floor(first / (2.0 * math.pi))
-    return np.interp(np.arange(len(contact)), times, values) + offset
+    phase_of_frames = np.interp(np.arange(len(contact)), times, values) + offset
+    return gaussian_filter1d(phase_of_frames, ROUND_FRAMES, mode="nearest")
 
 
 def _advance(last: int, foot: int) -> float:

@@ -61,14 +61,15 @@ class TorchPhaseNetwork(nn.Module):
         Args:
             z: normalised input ``(N, I)``.
             phase: ``(N,)`` [rad].
-            drop: what is done to the input of every layer, e.g. dropout.
+            drop: what is done to what the hidden layers say, e.g. dropout.
         """
         amounts = control_weights(phase)
         h = z
         for index, layer in enumerate(self.layers):
             if index:
                 h = functional.elu(h)
-            h = layer(drop(h) if drop else h, amounts)
+                h = drop(h) if drop else h
+            h = layer(h, amounts)
         return h
 
     def normalize_input(self, x: Tensor) -> Tensor:

@@ -3,7 +3,7 @@
     L = sum_p w_p mean |z_y - net(drop(z_x + noise), phase)|^2_p / sum_p w_p + l1 sum_layers mean |W|
 
 over the parts p of the output, z normalised. Dropout acts on the input of every layer (section 5.4 of the
-paper), the noise on the pose alone.
+paper), less on the path than on the rest; the noise on the pose alone.
 """
 
 from __future__ import annotations
@@ -88,9 +88,9 @@ class NetworkTrainer:
             group["lr"] = self.learning_rate(progress)
         drawn = torch.randint(len(self._rows), (self.config.minibatch,), generator=self.generator)
         rows = self._rows[drawn]
-        z = self._add_noise(self.network.normalize_input(self._inputs[rows]))
+        z = self._disturb(self.network.normalize_input(self._inputs[rows]))
         wanted = self.network.normalize_output(self._outputs[rows])
-        error = self.network(z, self._phases[rows], self._drop) - wanted
+        error = self.network(z, self._phases[rows], self._drop_hidden) - wanted
         loss = (error.square().mean(dim=0) * self._weights).sum()
         sparsity = sum(layer.weight.abs().mean() for layer in self.network.layers)
         self.optimizer.zero_grad(set_to_none=True)
@@ -124,20 +124,22 @@ class NetworkTrainer:
             shares={k: float(v.mean()) for k, v in unpack_output(squares.numpy()).items()},
         )
 
-    def _add_noise(self, z: Tensor) -> Tensor:
-        """Disturb the pose of normalised inputs ``(N, I)`` in place."""
-        if self.config.pose_noise:
-            pose = z[:, pose_numbers()]
-            pose += (self.config.pose_noise * self.config.pose_scale) * torch.randn(
-                pose.shape, generator=self.generator
-            )
-        return z
+    def _disturb(self, z: Tensor) -> Tensor:
+        """Return normalised inputs ``(N, I)`` with noise on the pose and numbers left out."""
+        start = pose_numbers().start
+        path, pose = z[:, :start], z[:, start:]
+        noise = torch.randn(pose.shape, generator=self.generator)
+        pose = pose + self.config.pose_noise * self.config.pose_scale * noise
+        return torch.cat([self._drop(path, self.config.path_dropout), self._drop_hidden(pose)], dim=1)
 
-    def _drop(self, h: Tensor) -> Tensor:
-        if not self.config.dropout:
+    def _drop_hidden(self, h: Tensor) -> Tensor:
+        return self._drop(h, self.config.dropout)
+
+    def _drop(self, h: Tensor, share: float) -> Tensor:
+        """Return numbers with a share of them left out and the rest raised, so that the mean stays."""
+        if not share:
             return h
-        keep = 1.0 - self.config.dropout
-        return h * (torch.rand(h.shape, generator=self.generator) < keep) / keep
+        return h * (torch.rand(h.shape, generator=self.generator) < 1.0 - share) / (1.0 - share)
 
 
 def _weights_of_numbers(weights: LossWeights) -> np.ndarray:

@@ -46,7 +46,10 @@ class NetworkTrainingConfig:
     hidden: int = 256
     """Units of each of the two hidden layers (512)."""
     dropout: float = 0.3
-    """Share of the inputs of each layer that is left out (0.3)."""
+    """Share of the pose and of the hidden units that is left out (0.3)."""
+    path_dropout: float = 0.05
+    """Share of the path that is left out. Less than of the rest: what is often missing is answered with an
+    average, and the character would go slower or faster than asked (0.3)."""
     learning_rate: float = 1e-3
     """Of Adam at first (1e-4, constant); it falls to `learning_rate_end` along half a cosine."""
     learning_rate_end: float = 1e-5
@@ -78,5 +81,6 @@ class NetworkTrainingConfig:
         for name in ("learning_rate", "pose_scale"):
             if getattr(self, name) <= 0:
                 raise UniconError(f"training.{name} is {getattr(self, name)}, expected above 0")
-        if not 0 <= self.dropout < 1:
-            raise UniconError(f"training.dropout is {self.dropout}, expected 0 to below 1")
+        for name in ("dropout", "path_dropout"):
+            if not 0 <= getattr(self, name) < 1:
+                raise UniconError(f"training.{name} is {getattr(self, name)}, expected 0 to below 1")
