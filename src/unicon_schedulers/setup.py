@@ -19,7 +19,9 @@ setup(
     entry_points={
         "console_scripts": [
             "dataset_node = unicon_schedulers.dataset_node:main",
+            "keyboard_node = unicon_schedulers.keyboard_node:main",
             "stitching_node = unicon_schedulers.stitching_node:main",
+            "teleop_keyboard = unicon_schedulers.teleop_keyboard:main",
         ]
     },
 )

@@ -84,6 +84,11 @@ def from_frame(frame: CharacterFrame) -> RawFrame:
     )
 
 
+def to_state(frame: CharacterFrame) -> CharacterState:
+    """Return one frame of a program that is trusted, e.g. the executor, as a state."""
+    return CharacterState(**vars(from_frame(frame)))
+
+
 class _LazyFrames(Sequence[RawFrame]):
     """Converts frames only when they are looked at, so that a message refused early costs nothing."""
 

@@ -9,6 +9,7 @@ from tests.schedulers.keyboard.steerable import CARD, Steerable
 from unicon import rotations, state
 from unicon.humanoid import HUMANOID
 from unicon.schedulers.keyboard.command import LocomotionCommand
+from unicon.schedulers.keyboard.go_to import Destination
 from unicon.schedulers.keyboard.scheduler import KeyboardConfig, KeyboardScheduler
 
 TICK_NS = 1_000_000_000 // 60
@@ -70,6 +71,12 @@ def test_it_goes_on_from_where_it_is_placed():
     assert np.arctan2(moved[1], moved[0]) == pytest.approx(1.5, abs=0.05)
 
 
+def follow(made: KeyboardScheduler, avatar, tick: int) -> None:
+    """Let the executor have followed the frame as it was sent."""
+    target = made.generator.state if tick == 0 else made._frames[0]
+    made.follow(avatar, target, made._first * TICK_NS)
+
+
 def avatar_at(pos_w: list[float], heading: float = 0.0):
     return state.move(HUMANOID.rest_state(), np.array(heading), np.array([*pos_w, 0.0]))
 
@@ -77,7 +84,7 @@ def avatar_at(pos_w: list[float], heading: float = 0.0):
 def test_open_loop_nothing_of_the_avatar_counts():
     made, alone = scheduler(), scheduler()
     for tick in range(60):
-        made.follow(avatar_at([3.0, 1.0]), tick * TICK_NS)
+        follow(made, avatar_at([3.0, 1.0]), tick)
         ours, theirs = run(made, 1, FORWARD, tick)[0], run(alone, 1, FORWARD, tick)[0]
     assert np.array_equal(ours.frames.root_pos_w, theirs.frames.root_pos_w)
 
@@ -85,7 +92,7 @@ def test_open_loop_nothing_of_the_avatar_counts():
 def test_with_feedback_the_reference_comes_to_the_avatar():
     made = scheduler(feedback=0.2)
     for tick in range(60):
-        made.follow(avatar_at([0.4, 0.3], 0.5), tick * TICK_NS)
+        follow(made, avatar_at([0.4, 0.3], 0.5), tick)
         window = run(made, 1, first=tick)[0]
     assert np.allclose(window.frames.root_pos_w[0, :2], [0.4, 0.3], atol=0.02)
     assert rotations.heading_angle(window.frames.root_quat_w)[0] == pytest.approx(0.5, abs=0.02)
@@ -94,7 +101,7 @@ def test_with_feedback_the_reference_comes_to_the_avatar():
 def test_it_waits_for_an_avatar_that_lags():
     made = scheduler(wait_m=(0.3, 0.6))
     for tick in range(240):
-        made.follow(avatar_at([0.0, 0.0]), tick * TICK_NS)
+        follow(made, avatar_at([0.0, 0.0]), tick)
         window = run(made, 1, FORWARD, tick)[0]
     assert 0.3 < window.frames.root_pos_w[0, 0] < 1.2
     assert window.frames.root_lin_vel_w[0, 0] == pytest.approx(0.0, abs=0.05)
@@ -115,3 +122,31 @@ def test_a_late_tick_skips_frames_and_keeps_the_time():
     late = made.next_frames(110 * TICK_NS)
     assert late.time_ns - early.time_ns == pytest.approx(10 * TICK_NS, abs=20)
     assert late.frames.root_pos_w[0, 0] - early.frames.root_pos_w[0, 0] == pytest.approx(0.2, abs=0.02)
+
+
+@pytest.mark.parametrize("anchored", [False, True])
+def test_it_walks_to_a_place_in_the_world_and_faces_as_asked(anchored):
+    made = scheduler()
+    run(made, 5)
+    if anchored:
+        frame = made._frames[0]
+        moved = state.move(frame, np.array(1.0), np.array([2.0, -1.0, 0.0]))
+        made.follow(moved, moved, made._first * TICK_NS)
+    made.go_to(Destination((-2.0, 1.5), facing_w=0.7))
+    run(made, 900, first=5)
+    assert made.progress is not None
+    assert made.progress.state == "arrived"
+    place = made.anchor.to_world(made.generator.state.root_pos_w[:2])
+    assert np.linalg.norm(place - [-2.0, 1.5]) < 0.3
+    off = made.generator.heading + made.anchor.turn - 0.7
+    assert abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi) < 0.25
+
+
+def test_a_key_ends_the_walk_to_a_place():
+    made = scheduler()
+    made.go_to(Destination((5.0, 0.0)))
+    run(made, 60)
+    made.command(LocomotionCommand((-0.5, 0.0)), 60 * TICK_NS)
+    window = run(made, 20, LocomotionCommand((-0.5, 0.0)), first=60)
+    late = run(made, 200, LocomotionCommand((-0.5, 0.0)), first=80)[-1]
+    assert late.frames.root_pos_w[0, 0] < window[0].frames.root_pos_w[0, 0]

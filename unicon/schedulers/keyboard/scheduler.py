@@ -20,8 +20,10 @@ import numpy as np
 
 from unicon import rotations, state
 from unicon.motion.clip_index import RATE_HZ
+from unicon.schedulers.keyboard.anchor import Anchor, anchor_between
 from unicon.schedulers.keyboard.command import STAND, LocomotionCommand, clamp
 from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator, PoseNetwork
+from unicon.schedulers.keyboard.go_to import Destination, GoTo, Progress
 from unicon.schedulers.pfnn.layout import GAITS, PRESENT
 from unicon.schedulers.pfnn.network_card import PhaseNetworkCard
 from unicon.schedulers.stitching import Window
@@ -48,8 +50,8 @@ class KeyboardConfig:
 class Lag(NamedTuple):
     """Where the simulated avatar is, seen from the frame that it should follow."""
 
-    offset_w: np.ndarray
-    """``(2,)`` [m]."""
+    offset: np.ndarray
+    """``(2,)`` [m], in the source's own frame."""
     turn: float
     """[rad]."""
 
@@ -68,21 +70,51 @@ class KeyboardScheduler:
         self._frames = [standing] * (config.window + 1)
         self._first = 0
         self._lag: Lag | None = None
+        self._go_to: GoTo | None = None
+        self.progress: Progress | None = None
+        """Of the way to a place, while there is one."""
+        self.anchor = Anchor()
+        """Where the frames lie in the world, as far as the executor said."""
 
     def command(self, command: LocomotionCommand, time_ns: int) -> tuple[str, ...]:
         """Take a command; return what of it was too much and was clamped, in words."""
         clamped = clamp(command, self.card)
-        self._command = clamped.command
+        self._command, self._go_to = clamped.command, None
         self._until_ns = time_ns + round(self.config.timeout_s * NS_PER_S)
         return clamped.changes
 
-    def follow(self, avatar: CharacterState, time_ns: int) -> None:
-        """Take the avatar's state at a time, for feedback and for waiting."""
+    def follow(self, avatar: CharacterState, target: CharacterState, time_ns: int) -> None:
+        """Take what the executor did: for going to places, for feedback and for waiting.
+
+        Args:
+            avatar: where the simulated avatar is in the world.
+            target: where it should be, as the executor anchored this scheduler's frame.
+            time_ns: which frame's time that is.
+        """
         index = round((time_ns - self._start_ns) * RATE_HZ / NS_PER_S) - self._first
         frame = self._frames[int(np.clip(index, 0, len(self._frames) - 1))]
-        turn = rotations.heading_angle(avatar.root_quat_w) - rotations.heading_angle(frame.root_quat_w)
-        offset_w = (avatar.root_pos_w - frame.root_pos_w)[:2]
-        self._lag = Lag(offset_w, float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi))
+        self.anchor = anchor_between(frame, target)
+        turn = rotations.heading_angle(avatar.root_quat_w) - rotations.heading_angle(target.root_quat_w)
+        offset = self.anchor.to_source(avatar.root_pos_w[:2]) - self.anchor.to_source(target.root_pos_w[:2])
+        self._lag = Lag(offset, float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi))
+
+    def go_to(self, destination: Destination) -> None:
+        """Walk to a place in the world from now on; any command ends it."""
+        x, y = self.anchor.to_source(np.array(destination.pos_w))
+        facing = destination.facing_w
+        facing = None if facing is None else facing - self.anchor.turn
+        here = replace(destination, pos_w=(float(x), float(y)), facing_w=facing)
+        self._go_to = GoTo(here, self.generator.state.root_pos_w[:2])
+        self.progress = None
+
+    @property
+    def going(self) -> bool:
+        """Whether it is on its way to a place."""
+        return self._go_to is not None
+
+    def stop(self) -> None:
+        """Stand still, and go nowhere."""
+        self._go_to, self._command = None, STAND
 
     def place(self, pos_w: np.ndarray, heading: float) -> None:
         """Go on from another place and heading on the ground: frames not sent yet begin there."""
@@ -115,10 +147,19 @@ class KeyboardScheduler:
     def _make(self, due_ns: int) -> CharacterState:
         """Make a frame, by the command that holds then."""
         command = self._command if due_ns <= self._until_ns + NS_PER_S / RATE_HZ else STAND
+        if self._go_to is not None:
+            command = self._steer(self._go_to)
         if self._lag is not None:
-            command = self._waited(command, float(np.linalg.norm(self._lag.offset_w)))
+            command = self._waited(command, float(np.linalg.norm(self._lag.offset)))
             self._draw_to_avatar(self._lag)
         return self.generator.step(command)
+
+    def _steer(self, go_to: GoTo) -> LocomotionCommand:
+        generator = self.generator
+        self.progress = go_to.steer(generator.state.root_pos_w[:2], generator.heading)
+        if self.progress.state != "going":
+            self.stop()
+        return clamp(self.progress.command, self.card).command
 
     def _waited(self, command: LocomotionCommand, lag_m: float) -> LocomotionCommand:
         if self.config.wait_m is None:
@@ -132,9 +173,9 @@ class KeyboardScheduler:
         if share <= 0.0:
             return
         generator = self.generator
-        pos_w = generator.state.root_pos_w[:2] + share * lag.offset_w
+        pos_w = generator.state.root_pos_w[:2] + share * lag.offset
         generator.place(pos_w, generator.heading + share * lag.turn)
-        self._lag = Lag((1.0 - share) * lag.offset_w, (1.0 - share) * lag.turn)
+        self._lag = Lag((1.0 - share) * lag.offset, (1.0 - share) * lag.turn)
 
 
 def _flat(pos_w: np.ndarray) -> np.ndarray:

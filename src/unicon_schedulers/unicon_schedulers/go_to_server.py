@@ -1,0 +1,91 @@
+"""The action `~/go_to`: walks to a point, says how far it still is, and can be cancelled."""
+
+from __future__ import annotations
+
+import math
+
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.node import Node
+from rclpy.task import Future
+
+from unicon.schedulers.keyboard.go_to import Destination, Progress
+from unicon.schedulers.keyboard.scheduler import KeyboardScheduler
+from unicon_msgs.action import GoTo
+
+FEEDBACK_FRAMES = 6
+STUCK = "no nearer for 5 s: is something in the way?"
+
+
+class GoToServer:
+    """One goal at a time; a new one, a key or a cancel ends the last."""
+
+    def __init__(self, node: Node, scheduler: KeyboardScheduler) -> None:
+        self._scheduler, self._logger = scheduler, node.get_logger()
+        self._goal: ServerGoalHandle | None = None
+        self._ended = Future()
+        self._frames = 0
+        self.server = ActionServer(
+            node,
+            GoTo,
+            "~/go_to",
+            self._execute,
+            goal_callback=self._check,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+
+    def report(self) -> None:
+        """Say how far it is, and end the goal when it has arrived; called once a frame."""
+        if self._goal is None:
+            return
+        progress = self._scheduler.progress
+        if self._goal.is_cancel_requested:
+            self._scheduler.stop()
+            self._end("cancelled")
+        elif progress is not None and progress.state != "going":
+            self._end(progress.state)
+        elif not self._scheduler.going:
+            self._end("another command came")
+        elif progress is not None:
+            self._say(progress)
+
+    def _check(self, goal: GoTo.Goal) -> GoalResponse:
+        numbers = (goal.position.x, goal.position.y, goal.facing, goal.speed)
+        if not all(math.isfinite(number) for number in numbers) or goal.speed < 0.0:
+            self._logger.warning(f"go_to refused: {numbers}, expected finite numbers and no negative speed")
+            return GoalResponse.REJECT
+        return GoalResponse.ACCEPT
+
+    async def _execute(self, goal: ServerGoalHandle) -> GoTo.Result:
+        if self._goal is not None:
+            self._end("another goal came")
+        request: GoTo.Goal = goal.request
+        facing = request.facing if request.face else None
+        place = request.position.x, request.position.y
+        speed = request.speed or Destination.speed_m_s
+        self._scheduler.go_to(Destination(place, facing, speed))
+        self._goal, self._ended = goal, Future()
+        ended: str = await self._ended
+        return self._result(goal, ended)
+
+    def _end(self, how: str) -> None:
+        self._goal = None
+        self._ended.set_result(how)
+
+    def _say(self, progress: Progress) -> None:
+        self._frames += 1
+        if self._goal is not None and self._frames % FEEDBACK_FRAMES == 0:
+            feedback = GoTo.Feedback(distance=progress.distance_m, share=progress.share)
+            self._goal.publish_feedback(feedback)
+
+    def _result(self, goal: ServerGoalHandle, how: str) -> GoTo.Result:
+        progress = self._scheduler.progress
+        distance = progress.distance_m if progress is not None else 0.0
+        if goal.is_cancel_requested:
+            goal.canceled()
+        elif how == "arrived":
+            goal.succeed()
+        else:
+            goal.abort()
+        message = {"arrived": f"stands {distance:.2f} m from it", "stuck": STUCK}.get(how, how)
+        return GoTo.Result(success=how == "arrived", message=message, distance=distance)
