@@ -74,7 +74,12 @@ def test_an_unknown_scheduler_is_answered_with_those_there_are():
 
 TABLES = {
     "unicon_executor": ["unicon_executor.parameters"],
-    "unicon_schedulers": ["unicon_schedulers.stitching_node", "unicon_schedulers.dataset_node"],
+    "unicon_schedulers": [
+        "unicon_schedulers.stitching_node",
+        "unicon_schedulers.dataset_node",
+        "unicon_schedulers.keyboard_node",
+        "unicon_schedulers.teleop_keyboard",
+    ],
     "unicon_recorder": ["unicon_recorder.recorder_node"],
 }
 

@@ -1,4 +1,8 @@
-"""The action `~/go_to`: walks to a point, says how far it still is, and can be cancelled."""
+"""The action `~/go_to`: walks to a point, says how far it still is, and can be cancelled.
+
+A goal is kept as accepted while the character walks and executed when it ends: a coroutine that waits inside
+the executor would be asked again and again, and keep it from taking messages.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,6 @@ import math
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
-from rclpy.task import Future
 
 from unicon.schedulers.keyboard.go_to import Destination, Progress
 from unicon.schedulers.keyboard.scheduler import KeyboardScheduler
@@ -23,14 +26,14 @@ class GoToServer:
     def __init__(self, node: Node, scheduler: KeyboardScheduler) -> None:
         self._scheduler, self._logger = scheduler, node.get_logger()
         self._goal: ServerGoalHandle | None = None
-        self._ended = Future()
         self._frames = 0
         self.server = ActionServer(
             node,
             GoTo,
             "~/go_to",
-            self._execute,
+            lambda goal: GoTo.Result(),
             goal_callback=self._check,
+            handle_accepted_callback=self._begin,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
         )
 
@@ -56,21 +59,21 @@ class GoToServer:
             return GoalResponse.REJECT
         return GoalResponse.ACCEPT
 
-    async def _execute(self, goal: ServerGoalHandle) -> GoTo.Result:
-        if self._goal is not None:
-            self._end("another goal came")
+    def _begin(self, goal: ServerGoalHandle) -> None:
+        self._end("another goal came")
         request: GoTo.Goal = goal.request
         facing = request.facing if request.face else None
         place = request.position.x, request.position.y
         speed = request.speed or Destination.speed_m_s
         self._scheduler.go_to(Destination(place, facing, speed))
-        self._goal, self._ended = goal, Future()
-        ended: str = await self._ended
-        return self._result(goal, ended)
+        self._goal = goal
 
     def _end(self, how: str) -> None:
-        self._goal = None
-        self._ended.set_result(how)
+        """Let the goal that is under way, if there is one, have its result."""
+        goal, self._goal = self._goal, None
+        if goal is not None:
+            result = self._result(how)
+            goal.execute(lambda handle: _close(handle, result))
 
     def _say(self, progress: Progress) -> None:
         self._frames += 1
@@ -78,14 +81,18 @@ class GoToServer:
             feedback = GoTo.Feedback(distance=progress.distance_m, share=progress.share)
             self._goal.publish_feedback(feedback)
 
-    def _result(self, goal: ServerGoalHandle, how: str) -> GoTo.Result:
+    def _result(self, how: str) -> GoTo.Result:
         progress = self._scheduler.progress
         distance = progress.distance_m if progress is not None else 0.0
-        if goal.is_cancel_requested:
-            goal.canceled()
-        elif how == "arrived":
-            goal.succeed()
-        else:
-            goal.abort()
         message = {"arrived": f"stands {distance:.2f} m from it", "stuck": STUCK}.get(how, how)
         return GoTo.Result(success=how == "arrived", message=message, distance=distance)
+
+
+def _close(goal: ServerGoalHandle, result: GoTo.Result) -> GoTo.Result:
+    if goal.is_cancel_requested:
+        goal.canceled()
+    elif result.success:
+        goal.succeed()
+    else:
+        goal.abort()
+    return result
