@@ -12,7 +12,9 @@ import yaml
 
 ROOT = Path(__file__).parents[1]
 GRAPH = yaml.safe_load((ROOT / "src/unicon_bringup/config/graph.yaml").read_text())
-MESSAGES = sorted((ROOT / "src/unicon_msgs").glob("*/*.[ms][sr][gv]"))
+MESSAGES = sorted(
+    path for kind in ("msg", "srv", "action") for path in (ROOT / "src/unicon_msgs" / kind).glob(f"*.{kind}")
+)
 
 
 def test_the_import_contracts_hold():

@@ -23,7 +23,7 @@ PARAMETERS = (
     Parameter("walk", PilotConfig.walk_m_s, "speed of a walk", "m/s", 0.1, 3.0),
     Parameter("jog", PilotConfig.jog_m_s, "speed of a jog", "m/s", 0.1, 5.0),
     Parameter("run", PilotConfig.run_m_s, "speed of a run", "m/s", 0.1, 6.0),
-    Parameter("turn", PilotConfig.turn_rad_s, "turn rate", "rad/s", 0.1, 4.0),
+    Parameter("turn", PilotConfig.turn_rad_s, "turn rate of the turning keys", "rad/s", 0.1, 4.0),
 )
 PERIOD_S = 1.0 / 30.0
 _MODES = {
