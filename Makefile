@@ -7,7 +7,7 @@ DEMO_ARGS ?=
 BENCH_ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test check format doctor bench-graph bench-motions bench-train clean
+.PHONY: help setup demo test check format doctor bench-graph bench-keyboard bench-motions bench-train clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -39,6 +39,9 @@ doctor: setup ## look whether this machine has what it takes
 
 bench-graph: setup ## run the graph for 60 s and write out/bench/graph.json
 	@tools/run python benchmarks/graph.py
+
+bench-keyboard: setup ## the keyboard scheduler, its reference and the avatar that follows it: out/bench/keyboard.json
+	@OMP_NUM_THREADS=1 tools/run python benchmarks/keyboard.py $(BENCH_ARGS)
 
 bench-motions: ## the motion library beside mink, bvhio and upc-pymotion: out/bench/motions_speed.json
 	@$(PYTHON) tools/setup.py base ros train dev bench

@@ -1,0 +1,275 @@
+"""`make bench-keyboard`: the keyboard scheduler, its reference, and the avatar that follows it.
+
+1. The network and a whole frame of the generator, timed one by one.
+2. The scripted drive of two minutes for several seeds: the reference alone, and the avatar in lockstep, which
+   is put back into its target when it falls.
+3. The node in a graph: its share of a core while it is steered, and the time from a command to the first
+   target frame that shows it.
+
+Writes out/bench/keyboard.json, and a video and a contact sheet of the first drive.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import tyro
+from rich.console import Console
+from rich.progress import track
+
+from unicon import state
+from unicon.errors import UniconError
+from unicon.humanoid import HUMANOID
+from unicon.motion.clip_index import RATE_HZ
+from unicon.render.gl import NoGLError
+from unicon.render.scene import Picture
+from unicon.render.show import RenderConfig, render
+from unicon.render.take import Take
+from unicon.schedulers.keyboard.drive import Stage, command_at, drive_seconds, scripted_drive
+from unicon.schedulers.keyboard.drive_metrics import DriveResult, measure_drive
+from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator
+from unicon.schedulers.keyboard.scheduler import KeyboardConfig, KeyboardScheduler
+from unicon.schedulers.pfnn.network import PhaseNetwork
+from unicon.schedulers.pfnn.network_card import PhaseNetworkCard
+from unicon.schedulers.pfnn.network_file import find_network, read_network
+from unicon.state import CharacterState
+from unicon.target_frames import RawFrame, RawTargetFrames
+from unicon.tracking import TICK_NS, Tracker, TrackerConfig
+from unicon_bringup.graph import GraphConfig
+from unicon_bringup.session import GraphSession
+from unicon_msgs.msg import LocomotionCommand, TargetFrames
+from unicon_ros.qos import COMMAND, STREAM_SUBSCRIBER
+
+_REST_S = 1.5
+
+
+@dataclass(frozen=True)
+class BenchConfig:
+    """What to measure, and where to write."""
+
+    network: str = "pfnn"
+    """Name or folder of the network."""
+    policy: str = TrackerConfig.policy
+    """Name or folder of the avatar's policy."""
+    seeds: int = 5
+    """How many drives."""
+    keys: int = 40
+    """How many commands are timed."""
+    node: bool = True
+    """Whether to run the graph."""
+    out: Path = Path("out/bench/keyboard.json")
+
+
+class Drive:
+    """One scripted drive: the reference's frames, and how the avatar followed them."""
+
+    def __init__(self, card: PhaseNetworkCard, network: PhaseNetwork, policy: str, seed: int) -> None:
+        self.stages = scripted_drive(seed)
+        self.count = round(drive_seconds(self.stages) * RATE_HZ)
+        self._scheduler = KeyboardScheduler(network, card, KeyboardConfig(), 0)
+        self._tracker = Tracker(TrackerConfig(policy=policy))
+
+    def run(self) -> tuple[CharacterState, CharacterState, CharacterState, int]:
+        """Return reference, avatar and anchored target ``(T,)``, and how often the avatar fell."""
+        reference, actual, target = [], [], []
+        for tick in range(self.count):
+            time_ns = tick * TICK_NS
+            self._scheduler.command(command_at(self.stages, tick / RATE_HZ), time_ns)
+            window = self._scheduler.next_frames(time_ns)
+            count = window.frames.batch_shape[0]
+            frames = [RawFrame(**vars(window.frames[k])) for k in range(count)]
+            message = RawTargetFrames("keyboard", tick, HUMANOID.id, window.time_ns, 1.0 / RATE_HZ, frames)
+            refused = self._tracker.offer(message)
+            assert refused is None, refused
+            report = self._tracker.tick(time_ns)
+            reference.append(window.frames[0])
+            actual.append(report.actual)
+            target.append(report.target)
+        return state.stack(reference), state.stack(actual), state.stack(target), self._tracker.falls
+
+
+def time_calls(work: Callable[[int], object], count: int) -> np.ndarray:
+    """Return how long each call takes [ms], by the clock."""
+    times = np.empty(count)
+    for index in range(count):
+        began = time.perf_counter()
+        work(index)
+        times[index] = 1e3 * (time.perf_counter() - began)
+    return times
+
+
+def spread(times: np.ndarray) -> dict[str, float]:
+    """Return the median and the 99th percentile."""
+    return {"p50": float(np.median(times)), "p99": float(np.percentile(times, 99))}
+
+
+def time_network(network: PhaseNetwork) -> dict[str, dict[str, float]]:
+    """Time the network alone and a frame of the generator, along a drive."""
+    rng = np.random.default_rng(0)
+    inputs = network.input_mean + network.input_std * rng.standard_normal((200, network.sizes[0]))
+    predict = time_calls(lambda k: network.predict(inputs[k % 200], 0.01 * k), 5000)
+    stages = scripted_drive(0)
+    generator = PoseGenerator(network, GeneratorConfig())
+    step = time_calls(lambda k: generator.step(command_at(stages, k / RATE_HZ)), 3000)
+    return {"predict_ms": spread(predict), "frame_ms": spread(step)}
+
+
+def figures(results: list[DriveResult]) -> dict[str, object]:
+    """Return the medians over the drives, and the stages of the first."""
+    return {
+        "velocity_error_percent": float(np.median([r.velocity_error_percent for r in results])),
+        "heading_error_deg": float(np.median([r.heading_error_deg for r in results])),
+        "foot_slide_cm_s": float(np.median([r.slide_moving_cm_s for r in results])),
+        "foot_slide_standing_cm_s": float(np.median([r.slide_standing_cm_s for r in results])),
+        "stages": [stage._asdict() for stage in results[0].stages],
+    }
+
+
+def run_drives(config: BenchConfig, console: Console) -> tuple[dict[str, object], dict[str, object]]:
+    """Run all drives; return the figures of the reference and of the avatar."""
+    card, network = read_network(find_network(config.network))
+    references, avatars, falls = [], [], []
+    for seed in track(range(config.seeds), "drives", console=console):
+        drive = Drive(card, network, config.policy, seed)
+        reference, actual, target, fell = drive.run()
+        references.append(measure_drive(reference, drive.stages))
+        avatars.append(measure_drive(actual, drive.stages))
+        falls.append(fell)
+        if seed == 0:
+            draw(config, drive.stages, actual, target, console)
+    avatar = {"falls": sum(falls), "falls_of_each_drive": falls, **figures(avatars)}
+    return figures(references), avatar
+
+
+def draw(
+    config: BenchConfig, stages: list[Stage], actual: CharacterState, target: CharacterState, console: Console
+) -> None:
+    """Draw the avatar over its target, where this machine can."""
+    count = actual.batch_shape[0]
+    ends = np.cumsum([stage.seconds for stage in stages])
+    names = [
+        stages[min(int(np.searchsorted(ends, k / RATE_HZ, "right")), len(stages) - 1)].name
+        for k in range(count)
+    ]
+    take = Take(np.arange(count) / RATE_HZ, actual, target, tuple(names))
+    sheet = config.out.with_name("keyboard.png")
+    try:
+        pictures = Picture(320, 240)
+        render(take, RenderConfig(contact_sheet=sheet, picture=pictures, columns=8, rows=6), console)
+        small = Picture(480, 270)
+        render(take, RenderConfig(video=config.out.with_name("keyboard.mp4"), picture=small), console)
+    except NoGLError as error:
+        console.print(f"no pictures: {error}")
+
+
+class NodeBench:
+    """Steers the node of a graph and looks at its frames."""
+
+    def __init__(self, session: GraphSession) -> None:
+        self._session = session
+        self._newest: TargetFrames | None = None
+        self._arrived_s = 0.0
+        node = session.node
+        self._publisher = node.create_publisher(LocomotionCommand, "locomotion_command", COMMAND)
+        node.create_subscription(TargetFrames, "target_frames", self._take, STREAM_SUBSCRIBER)
+
+    def _take(self, message: TargetFrames) -> None:
+        self._newest, self._arrived_s = message, time.monotonic()
+
+    def key_to_target_ms(self) -> float:
+        """Stand, command a walk, and return the time to the first frame that is another."""
+        self._session.spin_for(_REST_S)
+        assert self._newest is not None
+        standing = _numbers(self._newest)
+        began = time.monotonic()
+        self._publisher.publish(LocomotionCommand(forward=1.2))
+        changed = lambda: bool(np.abs(_numbers(self._newest) - standing).max() > 1e-9)  # noqa: E731
+        self._session.spin_until(changed, 5.0, "changed target frame")
+        return 1e3 * (self._arrived_s - began)
+
+    def drive(self, seconds: float) -> None:
+        """Hold the keys of a drive."""
+        stages = scripted_drive(0)
+
+        def hold(elapsed: float) -> None:
+            command = command_at(stages, elapsed)
+            self._publisher.publish(
+                LocomotionCommand(
+                    forward=command.velocity_h[0], left=command.velocity_h[1], turn_rate=command.turn_rate
+                )
+            )
+
+        self._session.spin_for(seconds, hold)
+
+
+def _numbers(message: TargetFrames | None) -> np.ndarray:
+    """Return the last frame's place and hinges."""
+    assert message is not None
+    frame = message.frames[-1]
+    return np.array([frame.root_position.x, frame.root_position.y, *frame.joint_positions])
+
+
+def cpu_seconds(name: str) -> float:
+    """Return the processor time of the process whose command line holds a name [s]."""
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = path.read_bytes().split(b"\0")
+            fields = path.with_name("stat").read_text().rsplit(")", 1)[1].split()
+        except OSError:
+            continue
+        if any(word.endswith(name.encode()) for word in words[:2]):
+            return (int(fields[11]) + int(fields[12])) / 100.0
+    raise UniconError(f"there is no process {name}")
+
+
+def measure_node(config: BenchConfig, folder: Path) -> dict[str, float]:
+    """Run the graph; return the node's share of a core and the time from key to target."""
+    graph = GraphConfig(avatar="bench", scheduler="keyboard")
+    with GraphSession(graph, folder / "graph.log") as session:
+        session.wait_until_ready()
+        bench = NodeBench(session)
+        session.spin_for(_REST_S)
+        times = np.array([bench.key_to_target_ms() for _ in range(config.keys)])
+        before, began = cpu_seconds("keyboard_node"), time.monotonic()
+        bench.drive(30.0)
+        used = cpu_seconds("keyboard_node") - before
+        percent = 100.0 * used / (time.monotonic() - began)
+    return {
+        "node_cpu_percent": percent,
+        "key_to_target_ms_p50": float(np.median(times)),
+        "key_to_target_ms_p99": float(np.percentile(times, 99)),
+    }
+
+
+def main() -> None:
+    """Measure and write the figures."""
+    config = tyro.cli(BenchConfig, prog="make bench-keyboard", description=__doc__)
+    console = Console()
+    config.out.parent.mkdir(parents=True, exist_ok=True)
+    timed = time_network(read_network(find_network(config.network))[1])
+    found: dict[str, object] = {
+        "pfnn_ms_p99": timed["predict_ms"]["p99"],
+        "pfnn_ms_p50": timed["predict_ms"]["p50"],
+        "frame_ms": timed["frame_ms"],
+    }
+    if config.node:
+        with tempfile.TemporaryDirectory() as folder:
+            found.update(measure_node(config, Path(folder)))
+    found["policy"] = config.policy
+    found["reference"], found["avatar"] = run_drives(config, console)
+    config.out.write_text(json.dumps(found, indent=2) + "\n")
+    for part in ("reference", "avatar"):
+        shown = {key: value for key, value in found[part].items() if key != "stages"}  # type: ignore[attr-defined]
+        console.print(part, shown)
+    console.print({key: value for key, value in found.items() if key not in ("reference", "avatar")})
+    console.print(str(config.out))
+
+
+if __name__ == "__main__":
+    main()
