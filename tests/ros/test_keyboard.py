@@ -158,6 +158,9 @@ def test_typed_keys_become_commands_and_the_terminal_is_as_before(graph: Graph, 
 
     types_until("w", lambda c: c.forward == pytest.approx(1.2))
     types_until("\x1b[D", lambda c: c.turn_rate > 0.5)
+    typist.type("x\x1b")
+    typist.type("[C")
+    graph.until(lambda: commands[-1].turn_rate < 0.0, "a turn by an arrow in two pieces")
     typist.type("x")
     graph.until(lambda: commands[-1].forward == 0.0 and commands[-1].turn_rate == 0.0, "a stop")
     graph.until(lambda: "stands | walk" in typist.look()[-60:], "the line that it stands")

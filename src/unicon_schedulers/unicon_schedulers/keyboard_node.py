@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Mapping
 
 from geometry_msgs.msg import Twist, TwistStamped
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Joy
 
 from unicon.errors import UniconError
@@ -42,6 +43,7 @@ PARAMETERS = (
     ),
     Parameter("source", "keyboard", "name under which the target frames are published"),
 )
+_STATES_APART = 6
 _QUIET_S = 2.0
 """Between two complaints of the same kind."""
 
@@ -67,6 +69,7 @@ class KeyboardNode(TargetStreamNode):
         self._gamepad = GamepadProfile()
         self._rejected, self._clamped, self._gamepad_rests = 0, 0, True
         self._episode: int | None = None
+        self._states = 0
         self._listen()
         self.go_to_server = GoToServer(self, self.scheduler)
         self.get_logger().info(f"ready: {card.name}, up to {card.limits.get('forward_m_s', 0.0):.1f} m/s")
@@ -78,7 +81,9 @@ class KeyboardNode(TargetStreamNode):
             self.create_subscription(Twist, "cmd_vel", self._on_twist, COMMAND)
         self.create_subscription(LocomotionCommandMessage, "locomotion_command", self._on_command, COMMAND)
         self.create_subscription(Joy, "joy", self._on_joy, COMMAND)
-        self.create_subscription(CharacterStateMessage, "state", self._on_state, STREAM_SUBSCRIBER)
+        self.create_subscription(
+            CharacterStateMessage, "state", self._on_raw_state, STREAM_SUBSCRIBER, raw=True
+        )
 
     def next_frames(self, time_ns: int) -> Window:
         """Return the next poses."""
@@ -130,6 +135,13 @@ class KeyboardNode(TargetStreamNode):
     def _reject(self, error: UniconError) -> None:
         self._rejected += 1
         self.get_logger().warning(f"rejected: {error}", throttle_duration_sec=_QUIET_S)
+
+    def _on_raw_state(self, data: bytes) -> None:
+        """Take in every state where they are fed back, and otherwise a few a second: most are not decoded."""
+        self._states += 1
+        closed_loop = self.values["feedback"] > 0.0 or self.values["wait_m"] > 0.0
+        if closed_loop or self._states % _STATES_APART == 0:
+            self._on_state(deserialize_message(data, CharacterStateMessage))
 
     def _on_state(self, message: CharacterStateMessage) -> None:
         """Take in where the avatar is; after a reset begin anew where it stands."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from unicon.schedulers.keyboard.held_keys import FIRST_S, REPEAT_S, HeldKeys
+from unicon.schedulers.keyboard.held_keys import FIRST_S, REPEAT_S, SLACK_S, HeldKeys
 from unicon.schedulers.keyboard.key_table import Action
 
 
@@ -65,3 +65,37 @@ def test_letting_go_is_at_once():
     keys.press(Action.FORWARD, 0.0)
     keys.release()
     assert not keys.held(0.01)
+
+
+def test_after_two_holds_a_tap_is_as_short_as_the_terminal_allows():
+    keys = HeldKeys()
+    hold(keys, Action.FORWARD, 0.0, 1.0, wait_s=0.25)
+    assert keys.first_s == FIRST_S
+    hold(keys, Action.TURN_LEFT, 5.0, 1.0, wait_s=0.27)
+    assert keys.first_s == pytest.approx(0.27 + SLACK_S)
+    keys.press(Action.FORWARD, 10.0)
+    assert keys.held(10.32)
+    assert not keys.held(10.34)
+
+
+def test_a_single_stall_of_the_line_does_not_shorten_the_wait():
+    keys = HeldKeys()
+    hold(keys, Action.FORWARD, 0.0, 1.0, wait_s=0.5)
+    last_s = hold(keys, Action.FORWARD, 5.0, 1.0, wait_s=0.5)
+    hold(keys, Action.FORWARD, last_s, 1.0, wait_s=0.3)
+    assert keys.first_s == pytest.approx(0.5 + SLACK_S)
+
+
+def test_a_longer_wait_is_learned_again():
+    keys = HeldKeys()
+    for start_s in (0.0, 5.0):
+        hold(keys, Action.FORWARD, start_s, 1.0, wait_s=0.25)
+    hold(keys, Action.FORWARD, 10.0, 2.0, wait_s=0.5)
+    assert keys.first_s == pytest.approx(0.5 + SLACK_S)
+
+
+def test_fast_taps_teach_nothing():
+    keys = HeldKeys()
+    for time_s in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2):
+        keys.press(Action.FORWARD, time_s)
+    assert keys.first_s == FIRST_S

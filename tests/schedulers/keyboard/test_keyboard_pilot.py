@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from unicon.schedulers.keyboard.key_table import TABLE, Action, action_of, banner, read_keys
+from unicon.schedulers.keyboard.key_table import TABLE, Action, action_of, banner
 from unicon.schedulers.keyboard.keyboard_pilot import KeyboardPilot, PilotConfig
 
 CONFIG = PilotConfig()
@@ -18,7 +18,6 @@ def pilot(*typed: str) -> KeyboardPilot:
 
 
 def test_arrows_and_letters_do_the_same():
-    assert list(read_keys("w\x1b[A\x1bOD1")) == ["w", "up", "left", "1"]
     assert action_of("up") is action_of("W") is Action.FORWARD
     assert action_of("left") is action_of("a") is Action.TURN_LEFT
 

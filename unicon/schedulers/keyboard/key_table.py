@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from enum import Enum
 from typing import NamedTuple
 
@@ -54,24 +53,11 @@ TABLE = (
     Binding(("-",), Action.SLOWER),
 )
 _BY_KEY = {key: binding.action for binding in TABLE for key in binding.keys}
-_ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
 
 
 def action_of(key: str) -> Action:
     """Return what a key does; every key that is not in the table stops."""
     return _BY_KEY.get(key.lower(), Action.STOP)
-
-
-def read_keys(typed: str) -> Iterator[str]:
-    """Yield the keys that a terminal sent: characters, and arrows out of their escape sequences."""
-    place = 0
-    while place < len(typed):
-        if typed[place] == "\x1b" and typed[place + 1 : place + 2] in ("[", "O"):
-            yield _ARROWS.get(typed[place + 2 : place + 3], "escape")
-            place += 3
-        else:
-            yield typed[place]
-            place += 1
 
 
 def banner() -> str:

@@ -24,7 +24,8 @@ from unicon.schedulers.keyboard.anchor import Anchor, anchor_between
 from unicon.schedulers.keyboard.command import STAND, LocomotionCommand, clamp
 from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator, PoseNetwork
 from unicon.schedulers.keyboard.go_to import Destination, GoTo, Progress
-from unicon.schedulers.pfnn.layout import GAITS, PRESENT
+from unicon.schedulers.keyboard.path import HERE
+from unicon.schedulers.pfnn.layout import GAITS
 from unicon.schedulers.pfnn.network_card import PhaseNetworkCard
 from unicon.schedulers.stitching import Window
 from unicon.state import CharacterState
@@ -142,7 +143,7 @@ class KeyboardScheduler:
     @property
     def playing(self) -> str:
         """The gait that it goes in."""
-        return GAITS[int(self.generator.path.samples().gait[PRESENT].argmax())]
+        return GAITS[int(self.generator.path.gait[HERE].argmax())]
 
     def _make(self, due_ns: int) -> CharacterState:
         """Make a frame, by the command that holds then."""
