@@ -33,6 +33,7 @@ from unicon.render.show import RenderConfig, render
 from unicon.render.take import Take
 from unicon.schedulers.keyboard.drive import Stage, command_at, drive_seconds, scripted_drive
 from unicon.schedulers.keyboard.drive_metrics import DriveResult, measure_drive
+from unicon.schedulers.keyboard.foot_lock import FootLockConfig
 from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator
 from unicon.schedulers.keyboard.scheduler import KeyboardConfig, KeyboardScheduler
 from unicon.schedulers.pfnn.network import PhaseNetwork
@@ -144,7 +145,19 @@ def run_drives(config: BenchConfig, console: Console) -> tuple[dict[str, object]
         if seed == 0:
             draw(config, drive.stages, actual, target, console)
     avatar = {"falls": sum(falls), "falls_of_each_drive": falls, **figures(avatars)}
-    return figures(references), avatar
+    locked = {"foot_slide_locked_cm_s": slide_with_foot_lock(card, network)}
+    return {**locked, **figures(references)}, avatar
+
+
+def slide_with_foot_lock(card: PhaseNetworkCard, network: PhaseNetwork) -> float:
+    """Return the foot slide of the first drive's reference with feet held, while it moves [cm/s]."""
+    stages = scripted_drive(0)
+    scheduler = KeyboardScheduler(network, card, KeyboardConfig(foot_lock=FootLockConfig()), 0)
+    frames = []
+    for tick in range(round(drive_seconds(stages) * RATE_HZ)):
+        scheduler.command(command_at(stages, tick / RATE_HZ), tick * TICK_NS)
+        frames.append(scheduler.next_frames(tick * TICK_NS).frames[0])
+    return measure_drive(state.stack(frames), stages).slide_moving_cm_s
 
 
 def draw(

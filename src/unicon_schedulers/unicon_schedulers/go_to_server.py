@@ -44,13 +44,20 @@ class GoToServer:
         progress = self._scheduler.progress
         if self._goal.is_cancel_requested:
             self._scheduler.stop()
-            self._end("cancelled")
+            self.end("cancelled")
         elif progress is not None and progress.state != "going":
-            self._end(progress.state)
+            self.end(progress.state)
         elif not self._scheduler.going:
-            self._end("another command came")
+            self.end("another command came")
         elif progress is not None:
             self._say(progress)
+
+    def end(self, how: str) -> None:
+        """Let the goal that is under way, if there is one, have its result: arrived, or why not."""
+        goal, self._goal = self._goal, None
+        if goal is not None:
+            result = self._result(how)
+            goal.execute(lambda handle: _close(handle, result))
 
     def _check(self, goal: GoTo.Goal) -> GoalResponse:
         numbers = (goal.position.x, goal.position.y, goal.facing, goal.speed)
@@ -60,20 +67,13 @@ class GoToServer:
         return GoalResponse.ACCEPT
 
     def _begin(self, goal: ServerGoalHandle) -> None:
-        self._end("another goal came")
+        self.end("another goal came")
         request: GoTo.Goal = goal.request
         facing = request.facing if request.face else None
         place = request.position.x, request.position.y
         speed = request.speed or Destination.speed_m_s
         self._scheduler.go_to(Destination(place, facing, speed))
         self._goal = goal
-
-    def _end(self, how: str) -> None:
-        """Let the goal that is under way, if there is one, have its result."""
-        goal, self._goal = self._goal, None
-        if goal is not None:
-            result = self._result(how)
-            goal.execute(lambda handle: _close(handle, result))
 
     def _say(self, progress: Progress) -> None:
         self._frames += 1

@@ -11,6 +11,7 @@ from sensor_msgs.msg import Joy
 
 from unicon.errors import UniconError
 from unicon.schedulers.keyboard.command import LocomotionCommand
+from unicon.schedulers.keyboard.foot_lock import FootLockConfig
 from unicon.schedulers.keyboard.gamepad import GamepadProfile, command_of
 from unicon.schedulers.keyboard.scheduler import KeyboardConfig, KeyboardScheduler
 from unicon.schedulers.pfnn.network_file import find_network, read_network
@@ -41,6 +42,7 @@ PARAMETERS = (
     Parameter(
         "wait_m", 0.0, "lag of the avatar at which the reference stops and waits; 0: never", "m", 0.0, 10.0
     ),
+    Parameter("foot_lock", False, "standing feet are held still, which the paper leaves off"),
     Parameter("source", "keyboard", "name under which the target frames are published"),
 )
 _STATES_APART = 6
@@ -64,6 +66,7 @@ class KeyboardNode(TargetStreamNode):
             timeout_s=self.values["timeout_s"],
             feedback=self.values["feedback"],
             wait_m=(0.5 * stop_m, stop_m) if stop_m > 0.0 else None,
+            foot_lock=FootLockConfig() if self.values["foot_lock"] else None,
         )
         self.scheduler = KeyboardScheduler(network, card, config, self.pacer.tick_time_ns)
         self._gamepad = GamepadProfile()
@@ -147,6 +150,7 @@ class KeyboardNode(TargetStreamNode):
         """Take in where the avatar is; after a reset begin anew where it stands."""
         if self._episode is not None and message.episode != self._episode:
             self.get_logger().info("the avatar was reset: stands and begins anew")
+            self.go_to_server.end("the avatar was reset")
             self.scheduler.stop()
         self._episode = message.episode
         if message.source == self.values["source"]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
+from unicon.errors import UniconError
 from unicon.schedulers.keyboard.gamepad import GamepadProfile, command_of
 
 PROFILE = GamepadProfile()
@@ -38,3 +41,8 @@ def test_left_and_turn_follow_their_sticks():
 
 def test_a_device_with_fewer_axes_rests():
     assert command_of([], [], PROFILE).stands
+
+
+def test_a_stick_that_is_no_number_is_refused():
+    with pytest.raises(UniconError, match="expected finite numbers"):
+        command_of([0.0, math.nan], [], PROFILE)

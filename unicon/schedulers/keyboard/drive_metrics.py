@@ -23,7 +23,7 @@ from unicon.motion.grounding.contact import ContactConfig, Soles, find_contacts
 from unicon.schedulers.keyboard.drive import Stage
 from unicon.state import CharacterState
 
-SETTLE_S = 1.2
+SETTLE_S = 2.0
 _LEAST_M_S = 0.3
 _LEAST_FRAMES = 30
 

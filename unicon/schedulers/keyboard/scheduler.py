@@ -22,6 +22,7 @@ from unicon import rotations, state
 from unicon.motion.clip_index import RATE_HZ
 from unicon.schedulers.keyboard.anchor import Anchor, anchor_between
 from unicon.schedulers.keyboard.command import STAND, LocomotionCommand, clamp
+from unicon.schedulers.keyboard.foot_lock import FootLock, FootLockConfig
 from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator, PoseNetwork
 from unicon.schedulers.keyboard.go_to import Destination, GoTo, Progress
 from unicon.schedulers.keyboard.path import HERE
@@ -46,6 +47,8 @@ class KeyboardConfig:
     """Lags of the avatar at which the reference begins to slow down, and at which it stops; none: never."""
     generator: GeneratorConfig = field(default_factory=GeneratorConfig)
     """How poses are made."""
+    foot_lock: FootLockConfig | None = None
+    """How standing feet are held; none: they are as generated, as in the paper."""
 
 
 class Lag(NamedTuple):
@@ -71,6 +74,7 @@ class KeyboardScheduler:
         self._frames = [standing] * (config.window + 1)
         self._first = 0
         self._lag: Lag | None = None
+        self._foot_lock = FootLock(config.foot_lock) if config.foot_lock else None
         self._go_to: GoTo | None = None
         self.progress: Progress | None = None
         """Of the way to a place, while there is one."""
@@ -125,6 +129,8 @@ class KeyboardScheduler:
         moved = [state.move(frame, np.array(0.0), -_flat(before)) for frame in self._frames]
         self._frames = [state.move(frame, np.array(turn), _flat(np.asarray(pos_w))) for frame in moved]
         self._lag = None
+        if self._foot_lock:
+            self._foot_lock.reset()
 
     def next_frames(self, time_ns: int) -> Window:
         """Return the window of frames that begins one frame after ``time_ns``."""
@@ -153,7 +159,8 @@ class KeyboardScheduler:
         if self._lag is not None:
             command = self._waited(command, float(np.linalg.norm(self._lag.offset)))
             self._draw_to_avatar(self._lag)
-        return self.generator.step(command)
+        frame = self.generator.step(command)
+        return self._foot_lock.lock(frame, self.generator.contacts) if self._foot_lock else frame
 
     def _steer(self, go_to: GoTo) -> LocomotionCommand:
         generator = self.generator

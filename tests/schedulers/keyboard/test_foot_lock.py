@@ -1,0 +1,74 @@
+"""Tests for foot_lock.py."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from unicon.humanoid import HUMANOID
+from unicon.humanoid.kinematics import forward_kinematics
+from unicon.motion.grounding.contact import Soles
+from unicon.schedulers.keyboard.foot_lock import FootLock, FootLockConfig
+from unicon.state import CharacterState, stack
+
+BOTH, NONE = np.ones(4), np.zeros(4)
+REST = HUMANOID.rest_state()
+KNEE = HUMANOID.joint_names.index("left_knee")
+
+
+def crouching(shift_m: float) -> CharacterState:
+    """A pose with bent knees, whose root is shifted along x: its feet slide as far."""
+    joint_pos = REST.joint_pos.copy()
+    for side in ("left", "right"):
+        for hinge, angle in (("hip_y", -0.4), ("knee", 0.8), ("ankle_y", -0.4)):
+            joint_pos[HUMANOID.joint_names.index(f"{side}_{hinge}")] = angle
+    return replace(REST, joint_pos=joint_pos, root_pos_w=REST.root_pos_w + [shift_m, 0.0, -0.07])
+
+
+def feet(frame: CharacterState) -> np.ndarray:
+    soles = Soles(forward_kinematics(stack([frame])))
+    return np.sum(soles.weights[..., None] * soles.points_w, axis=-2)[0, :, :2]
+
+
+def test_standing_feet_stay_where_they_are_while_the_root_moves_on():
+    lock = FootLock(FootLockConfig())
+    frames = [lock.lock(crouching(0.004 * k), BOTH) for k in range(20)]
+    assert feet(crouching(0.076))[0, 0] - feet(crouching(0.0))[0, 0] == pytest.approx(0.076)
+    assert np.abs(feet(frames[-1]) - feet(frames[0])).max() < 0.006
+    assert np.allclose(frames[-1].root_pos_w, crouching(0.076).root_pos_w)
+
+
+def test_feet_in_the_air_are_left_alone():
+    lock = FootLock(FootLockConfig())
+    for k in range(10):
+        frame = crouching(0.01 * k)
+        assert np.allclose(lock.lock(frame, NONE).joint_pos, frame.joint_pos)
+
+
+def test_a_lifted_foot_comes_back_to_its_own_way():
+    lock = FootLock(FootLockConfig())
+    for k in range(15):
+        lock.lock(crouching(0.004 * k), BOTH)
+    off = [
+        np.abs(lock.lock(crouching(0.06), NONE).joint_pos - crouching(0.06).joint_pos).max()
+        for _ in range(40)
+    ]
+    assert off[0] > 0.02
+    assert off[-1] < 1e-3
+    assert np.all(np.diff(off) <= 1e-9)
+
+
+def test_no_foot_is_pulled_further_than_the_limit():
+    lock = FootLock(FootLockConfig(largest_m=0.05))
+    for k in range(40):
+        frame = lock.lock(crouching(0.01 * k), BOTH)
+    assert np.abs(feet(frame) - feet(crouching(0.39))).max() < 0.055
+
+
+def test_hinge_velocities_are_those_of_the_locked_legs():
+    lock = FootLock(FootLockConfig())
+    frames = [lock.lock(crouching(0.004 * k), BOTH) for k in range(10)]
+    rate = (frames[-1].joint_pos - frames[-2].joint_pos) * 60
+    assert frames[-1].joint_vel[KNEE] == pytest.approx(rate[KNEE])

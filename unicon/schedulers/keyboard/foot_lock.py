@@ -1,0 +1,88 @@
+"""Holds feet where they stand, after the network: an option, which the paper leaves off.
+
+While the network says that a foot stands, its ankle is shifted so that the point of contact (heel, ball, or
+in between as the foot rolls over) makes no step:
+
+    shift_t = shift_t-1 - (step of the point of contact as generated)
+
+The shift lasts while the foot stands and is no longer than ``largest_m``; of a foot that was lifted it dies
+away. The generator goes on from its own, unlocked pose, so nothing of it feeds back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from unicon import state
+from unicon.humanoid.kinematics import forward_kinematics
+from unicon.motion.clip_index import RATE_HZ
+from unicon.motion.grounding.contact import Soles
+from unicon.motion.grounding.leg_ik import SIDES, move_foot
+from unicon.state import CharacterState
+
+
+@dataclass(frozen=True)
+class FootLockConfig:
+    """When feet are held, and how far."""
+
+    begin: float = 0.6
+    """A foot is held from when the network is so sure that it stands."""
+    end: float = 0.4
+    """And until it is no surer than this."""
+    largest_m: float = 0.12
+    """No foot is shifted further."""
+    release_s: float = 0.08
+    """Time in which the shift of a foot that is lifted dies away to a third."""
+
+
+class FootLock:
+    """Both feet of a character, frame after frame."""
+
+    def __init__(self, config: FootLockConfig) -> None:
+        self._config = config
+        self._standing = np.zeros(2, dtype=bool)
+        self._shift_w = np.zeros((2, 2))
+        self._last: tuple[np.ndarray, np.ndarray] | None = None
+        self._last_change = np.zeros(35)
+
+    def lock(self, frame: CharacterState, contacts: np.ndarray) -> CharacterState:
+        """Return a frame with its standing feet where they stood.
+
+        Args:
+            frame: as generated.
+            contacts: how sure the network is of the contacts ``(4,)``, in the order of the layout.
+        """
+        config = self._config
+        batch = state.stack([frame])
+        bodies = forward_kinematics(batch)
+        soles = Soles(bodies)
+        sure = contacts.reshape(2, 2).max(axis=1)
+        self._standing = sure > np.where(self._standing, config.end, config.begin)
+        self._update(soles.points_w[0, ..., :2], soles.weights[0])
+        joint_pos = batch.joint_pos
+        for foot, side in enumerate(SIDES):
+            offset_w = np.append(self._shift_w[foot], 0.0)[None]
+            joint_pos = move_foot(joint_pos, bodies, side, offset_w)
+        change = joint_pos[0] - frame.joint_pos
+        rate = (change - self._last_change) * RATE_HZ
+        self._last_change = change
+        return replace(frame, joint_pos=joint_pos[0], joint_vel=frame.joint_vel + rate)
+
+    def reset(self) -> None:
+        """Forget where feet stood: the character was placed elsewhere."""
+        self._last, self._shift_w = None, np.zeros((2, 2))
+        self._last_change = np.zeros(35)
+
+    def _update(self, points_w: np.ndarray, weights: np.ndarray) -> None:
+        """Take in where heels and balls are ``(2, 2, 2)`` and what they carry ``(2, 2)``."""
+        if self._last is not None:
+            before_w, before = self._last
+            carried = 0.5 * (weights + before)[..., None]
+            self._shift_w -= self._standing[:, None] * np.sum(carried * (points_w - before_w), axis=1)
+        lengths = np.linalg.norm(self._shift_w, axis=-1)
+        too_far = lengths > self._config.largest_m
+        self._shift_w[too_far] *= (self._config.largest_m / lengths[too_far])[:, None]
+        self._shift_w[~self._standing] *= np.exp(-1.0 / (self._config.release_s * RATE_HZ))
+        self._last = points_w, weights
