@@ -7,7 +7,7 @@ from unicon_ros.parameters import Parameter
 PARAMETERS = (
     Parameter(
         "policy",
-        "reference_servo",
+        "tracker",
         "policy to begin with: a name under policies/, a folder, or reference_servo",
     ),
     Parameter("source", "", "source of target frames to follow; empty for whichever began last"),

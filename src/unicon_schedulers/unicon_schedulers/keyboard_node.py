@@ -46,6 +46,7 @@ PARAMETERS = (
     Parameter("source", "keyboard", "name under which the target frames are published"),
 )
 _STATES_APART = 6
+"""Open loop, one state in so many is decoded: it only tells where the frames lie in the world."""
 _QUIET_S = 2.0
 """Between two complaints of the same kind."""
 

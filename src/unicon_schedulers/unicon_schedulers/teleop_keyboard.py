@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import time
 
+from rclpy.duration import Duration
 from rclpy.executors import Executor
 from rclpy.node import Node
 
@@ -29,6 +30,8 @@ PARAMETERS = (
 PERIOD_S = 1.0 / 30.0
 SILENT_S = 2.0
 """Statuses of the executor come twice a second; after so long without one it is gone."""
+LAST_WORD = Duration(seconds=0.5)
+"""Patience for the last command to be received; a command holds no longer without it."""
 _MODES = {
     getattr(CharacterState, name): name.lower()
     for name in ("WAITING", "FOLLOWING", "HOLDING", "FALLEN", "PAUSED")
@@ -79,6 +82,8 @@ class TeleopKeyboard(Node):
                     terminal.show(self._line(now_s))
                 executor.spin_once(timeout_sec=0.0)
         self._send(STAND)
+        # who leaves at once takes along what was not received yet
+        self._publisher.wait_for_all_acked(LAST_WORD)
 
     def close(self) -> None:
         """Nothing is open."""

@@ -63,6 +63,9 @@ def clamp(command: LocomotionCommand, card: PhaseNetworkCard) -> Clamped:
     the limits forward or backward and sideways; the turn rate into its limit.
     """
     changes = []
+    if command.gait not in ("", "stand", *card.gait_speeds_m_s):
+        changes.append(f"gait {command.gait} to whichever goes with the speed")
+        command = replace(command, gait="")
     velocity, limits = _into_gait(command, card), card.limits
     allowed = _allowed_share(velocity, limits)
     if allowed < 1.0 - 1e-9:

@@ -6,7 +6,13 @@ in between as the foot rolls over) makes no step:
     shift_t = shift_t-1 - (step of the point of contact as generated)
 
 The shift lasts while the foot stands and is no longer than ``largest_m``; of a foot that was lifted it dies
-away. The generator goes on from its own, unlocked pose, so nothing of it feeds back.
+away. A standing foot is brought to the floor as well, and where a leg is too short for its foot the root
+sinks, both with a lag, so that nothing jerks:
+
+    lift <- lift + (-height - lift) / (1 + 60 settle_s)
+    drop <- drop + (what the leg lacks - drop) / (1 + 60 settle_s)
+
+The generator goes on from its own, unlocked pose, so nothing of it feeds back.
 """
 
 from __future__ import annotations
@@ -16,10 +22,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from unicon import state
-from unicon.humanoid.kinematics import forward_kinematics
+from unicon.humanoid.kinematics import BodyKinematics, forward_kinematics
 from unicon.motion.clip_index import RATE_HZ
 from unicon.motion.grounding.contact import Soles
-from unicon.motion.grounding.leg_ik import SIDES, move_foot
+from unicon.motion.grounding.leg_ik import SIDES, leg_of, missing_reach, move_foot
 from unicon.state import CharacterState
 
 
@@ -35,6 +41,10 @@ class FootLockConfig:
     """No foot is shifted further."""
     release_s: float = 0.08
     """Time in which the shift of a foot that is lifted dies away to a third."""
+    settle_s: float = 0.05
+    """Time in which a standing foot comes to the floor, and the root sinks, by two thirds."""
+    largest_drop_m: float = 0.05
+    """The root sinks by no more than this for a leg that is too short."""
 
 
 class FootLock:
@@ -44,6 +54,7 @@ class FootLock:
         self._config = config
         self._standing = np.zeros(2, dtype=bool)
         self._shift_w = np.zeros((2, 2))
+        self._lift, self._drop = np.zeros(2), 0.0
         self._last: tuple[np.ndarray, np.ndarray] | None = None
         self._last_change = np.zeros(35)
 
@@ -61,19 +72,43 @@ class FootLock:
         sure = contacts.reshape(2, 2).max(axis=1)
         self._standing = sure > np.where(self._standing, config.end, config.begin)
         self._update(soles.points_w[0, ..., :2], soles.weights[0])
+        self._lift += self._lag * (np.where(self._standing, -soles.heights[0], 0.0) - self._lift)
+        offset_w = np.concatenate([self._shift_w, self._lift[:, None]], axis=-1)
+        sunk = self._sink(frame, bodies, offset_w)
+        offset_w[:, 2] += self._drop
         joint_pos = batch.joint_pos
         for foot, side in enumerate(SIDES):
-            offset_w = np.append(self._shift_w[foot], 0.0)[None]
-            joint_pos = move_foot(joint_pos, bodies, side, offset_w)
+            joint_pos = move_foot(joint_pos, bodies, side, offset_w[foot, None])
         change = joint_pos[0] - frame.joint_pos
         rate = (change - self._last_change) * RATE_HZ
         self._last_change = change
-        return replace(frame, joint_pos=joint_pos[0], joint_vel=frame.joint_vel + rate)
+        return replace(sunk, joint_pos=joint_pos[0], joint_vel=frame.joint_vel + rate)
 
     def reset(self) -> None:
         """Forget where feet stood: the character was placed elsewhere."""
         self._last, self._shift_w = None, np.zeros((2, 2))
+        self._lift, self._drop = np.zeros(2), 0.0
         self._last_change = np.zeros(35)
+
+    @property
+    def _lag(self) -> float:
+        """Share of the way that lift and drop go in a frame."""
+        return 1.0 / (1.0 + self._config.settle_s * RATE_HZ)
+
+    def _sink(self, frame: CharacterState, bodies: BodyKinematics, offset_w: np.ndarray) -> CharacterState:
+        """Return the frame with its root lower, for standing feet to be shifted ``(2, 3)``."""
+        legs = [leg_of(side) for side in SIDES]
+        hips_w, ankles_w = (
+            bodies.pos_w[0, [getattr(leg, part) for leg in legs]] for part in ("thigh", "foot")
+        )
+        missing = self._standing * missing_reach(hips_w, ankles_w, offset_w)
+        change = self._lag * (min(float(missing.max()), self._config.largest_drop_m) - self._drop)
+        self._drop += change
+        return replace(
+            frame,
+            root_pos_w=frame.root_pos_w - [0.0, 0.0, self._drop],
+            root_lin_vel_w=frame.root_lin_vel_w - [0.0, 0.0, change * RATE_HZ],
+        )
 
     def _update(self, points_w: np.ndarray, weights: np.ndarray) -> None:
         """Take in where heels and balls are ``(2, 2, 2)`` and what they carry ``(2, 2)``."""

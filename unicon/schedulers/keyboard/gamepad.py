@@ -25,7 +25,7 @@ class GamepadProfile:
     """Tilt below which a stick rests."""
     walk_m_s: float = 1.3
     jog_m_s: float = 2.2
-    run_m_s: float = 3.0
+    run_m_s: float = 2.5
     side_m_s: float = 0.6
     turn_rad_s: float = 1.2
 

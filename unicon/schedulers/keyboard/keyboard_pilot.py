@@ -18,7 +18,7 @@ class PilotConfig:
 
     walk_m_s: float = 1.2
     jog_m_s: float = 2.2
-    run_m_s: float = 3.0
+    run_m_s: float = 2.5
     back_m_s: float = 0.7
     side_m_s: float = 0.5
     turn_rad_s: float = 1.0

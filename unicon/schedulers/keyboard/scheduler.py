@@ -105,11 +105,8 @@ class KeyboardScheduler:
 
     def go_to(self, destination: Destination) -> None:
         """Walk to a place in the world from now on; any command ends it."""
-        x, y = self.anchor.to_source(np.array(destination.pos_w))
-        facing = destination.facing_w
-        facing = None if facing is None else facing - self.anchor.turn
-        here = replace(destination, pos_w=(float(x), float(y)), facing_w=facing)
-        self._go_to = GoTo(here, self.generator.state.root_pos_w[:2])
+        pos_w = self.anchor.to_world(self.generator.state.root_pos_w[:2])
+        self._go_to = GoTo(destination, pos_w)
         self.progress = None
 
     @property
@@ -163,11 +160,16 @@ class KeyboardScheduler:
         return self._foot_lock.lock(frame, self.generator.contacts) if self._foot_lock else frame
 
     def _steer(self, go_to: GoTo) -> LocomotionCommand:
-        generator = self.generator
-        self.progress = go_to.steer(generator.state.root_pos_w[:2], generator.heading)
+        """Steer in the world: the anchor may change on the way."""
+        generator, anchor = self.generator, self.anchor
+        pos_w = anchor.to_world(generator.state.root_pos_w[:2])
+        self.progress = go_to.steer(pos_w, generator.heading + anchor.turn)
         if self.progress.state != "going":
             self.stop()
-        return clamp(self.progress.command, self.card).command
+        command = self.progress.command
+        if command.facing_w is not None:
+            command = replace(command, facing_w=command.facing_w - anchor.turn)
+        return clamp(command, self.card).command
 
     def _waited(self, command: LocomotionCommand, lag_m: float) -> LocomotionCommand:
         if self.config.wait_m is None:
