@@ -56,7 +56,7 @@ class BenchConfig:
 
     network: str = "pfnn"
     """Name or folder of the network."""
-    policy: str = TrackerConfig.policy
+    policy: str = "walker"
     """Name or folder of the avatar's policy."""
     seeds: int = 5
     """How many drives."""

@@ -35,9 +35,9 @@ SHEET_PICTURE = Picture(480, 360)
 class DemoConfig:
     """What the demo plays, and where it leaves its results."""
 
-    motions: tuple[str, ...] = ("walk", "turn_left", "jump", "wave", "punch", "run", "dance")
+    motions: tuple[str, ...] = ("stand", "wave", "idle_shift", "jump", "stand")
     """Motions to play, one after the other."""
-    seconds: float = 20.0
+    seconds: float = 25.0
     """How long the avatar lives."""
     transition_s: float = StitcherConfig.transition_s
     """Length of the transition into each motion [s]."""

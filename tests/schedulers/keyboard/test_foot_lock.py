@@ -27,9 +27,13 @@ def crouching(shift_m: float) -> CharacterState:
     return replace(REST, joint_pos=joint_pos, root_pos_w=REST.root_pos_w + [shift_m, 0.0, -0.07])
 
 
+def soles(frame: CharacterState) -> Soles:
+    return Soles(forward_kinematics(stack([frame])))
+
+
 def feet(frame: CharacterState) -> np.ndarray:
-    soles = Soles(forward_kinematics(stack([frame])))
-    return np.sum(soles.weights[..., None] * soles.points_w, axis=-2)[0, :, :2]
+    both = soles(frame)
+    return np.sum(both.weights[..., None] * both.points_w, axis=-2)[0, :, :2]
 
 
 def test_standing_feet_stay_where_they_are_while_the_root_moves_on():
@@ -72,3 +76,25 @@ def test_hinge_velocities_are_those_of_the_locked_legs():
     frames = [lock.lock(crouching(0.004 * k), BOTH) for k in range(10)]
     rate = (frames[-1].joint_pos - frames[-2].joint_pos) * 60
     assert frames[-1].joint_vel[KNEE] == pytest.approx(rate[KNEE])
+
+
+def test_a_foot_that_stands_over_the_floor_is_brought_down_to_it():
+    lock = FootLock(FootLockConfig())
+    raised = crouching(0.0)
+    raised = replace(raised, root_pos_w=raised.root_pos_w + [0.0, 0.0, 0.02])
+    for _ in range(60):
+        frame = lock.lock(raised, BOTH)
+    assert np.abs(soles(raised).heights).min() > 0.01
+    assert np.allclose(soles(frame).heights, 0.0, atol=0.003)
+    assert np.allclose(frame.root_pos_w, raised.root_pos_w)
+
+
+def test_the_root_sinks_no_further_than_allowed_for_a_leg_that_is_too_short():
+    lock = FootLock(FootLockConfig(largest_drop_m=0.02))
+    raised = replace(REST, root_pos_w=REST.root_pos_w + [0.0, 0.0, 0.1])
+    frames = [lock.lock(raised, BOTH) for _ in range(60)]
+    heights = np.array([frame.root_pos_w[2] for frame in frames])
+    assert heights[-1] == pytest.approx(REST.root_pos_w[2] + 0.08, abs=1e-3)
+    assert np.all(np.diff(heights) <= 1e-12)
+    # and its velocity says so
+    assert frames[5].root_lin_vel_w[2] == pytest.approx(60 * (heights[5] - heights[4]))
