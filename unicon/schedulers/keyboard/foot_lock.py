@@ -28,6 +28,9 @@ from unicon.motion.grounding.contact import Soles
 from unicon.motion.grounding.leg_ik import SIDES, leg_of, missing_reach, move_foot
 from unicon.state import CharacterState
 
+_LEAST_M = 5e-5
+"""A smaller shift is not worth moving a leg for."""
+
 
 @dataclass(frozen=True)
 class FootLockConfig:
@@ -41,7 +44,7 @@ class FootLockConfig:
     """No foot is shifted further."""
     release_s: float = 0.08
     """Time in which the shift of a foot that is lifted dies away to a third."""
-    settle_s: float = 0.05
+    settle_s: float = 0.03
     """Time in which a standing foot comes to the floor, and the root sinks, by two thirds."""
     largest_drop_m: float = 0.05
     """The root sinks by no more than this for a leg that is too short."""
@@ -78,7 +81,8 @@ class FootLock:
         offset_w[:, 2] += self._drop
         joint_pos = batch.joint_pos
         for foot, side in enumerate(SIDES):
-            joint_pos = move_foot(joint_pos, bodies, side, offset_w[foot, None])
+            if np.abs(offset_w[foot]).max() > _LEAST_M:
+                joint_pos = move_foot(joint_pos, bodies, side, offset_w[foot, None])
         change = joint_pos[0] - frame.joint_pos
         rate = (change - self._last_change) * RATE_HZ
         self._last_change = change
