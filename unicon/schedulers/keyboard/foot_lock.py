@@ -45,7 +45,7 @@ class FootLockConfig:
     release_s: float = 0.08
     """Time in which the shift of a foot that is lifted dies away to a third."""
     settle_s: float = 0.03
-    """Time in which a standing foot comes to the floor, and the root sinks, by two thirds."""
+    """Time in which a standing foot comes to the floor, and the root sinks, by more than half."""
     largest_drop_m: float = 0.05
     """The root sinks by no more than this for a leg that is too short."""
 
