@@ -5,8 +5,8 @@ in between as the foot rolls over) makes no step:
 
     shift_t = shift_t-1 - (step of the point of contact as generated)
 
-The shift lasts while the foot stands and is no longer than ``largest_m``; of a foot that was lifted it dies
-away. A standing foot is brought to the floor as well, and where a leg is too short for its foot the root
+The shift is no longer than ``largest_m``. While the foot stands it only creeps back, by ``creep_m_s``, so
+that nobody stands for long with feet pulled together; of a foot that was lifted it dies away. A standing foot is brought to the floor as well, and where a leg is too short for its foot the root
 sinks, both with a lag, so that nothing jerks:
 
     lift <- lift + (-height - lift) / (1 + 60 settle_s)
@@ -42,6 +42,8 @@ class FootLockConfig:
     """And until it is no surer than this."""
     largest_m: float = 0.12
     """No foot is shifted further."""
+    creep_m_s: float = 0.012
+    """Speed at which the shift of a standing foot goes back [m/s]."""
     release_s: float = 0.08
     """Time in which the shift of a foot that is lifted dies away to a third."""
     settle_s: float = 0.03
@@ -123,5 +125,7 @@ class FootLock:
         lengths = np.linalg.norm(self._shift_w, axis=-1)
         too_far = lengths > self._config.largest_m
         self._shift_w[too_far] *= (self._config.largest_m / lengths[too_far])[:, None]
+        creep = self._config.creep_m_s / RATE_HZ
+        self._shift_w *= np.maximum(1.0 - creep / np.maximum(lengths, 1e-9), 0.0)[:, None]
         self._shift_w[~self._standing] *= np.exp(-1.0 / (self._config.release_s * RATE_HZ))
         self._last = points_w, weights
