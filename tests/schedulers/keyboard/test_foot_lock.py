@@ -98,3 +98,14 @@ def test_the_root_sinks_no_further_than_allowed_for_a_leg_that_is_too_short():
     assert np.all(np.diff(heights) <= 1e-12)
     # and its velocity says so
     assert frames[5].root_lin_vel_w[2] == pytest.approx(60 * (heights[5] - heights[4]))
+
+
+def test_feet_of_who_stands_on_creep_back_under_the_hips():
+    lock = FootLock(FootLockConfig(creep_m_s=0.012))
+    for k in range(20):
+        lock.lock(crouching(0.004 * k), BOTH)
+    still = crouching(0.076)
+    off = [feet(lock.lock(still, BOTH))[0, 0] - feet(still)[0, 0] for _ in range(900)]
+    # 1 s at 0.012 m/s
+    assert off[60] - off[0] == pytest.approx(0.012, abs=0.002)
+    assert off[-1] == pytest.approx(0.0, abs=0.002)

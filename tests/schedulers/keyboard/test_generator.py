@@ -12,7 +12,7 @@ from unicon import rotations
 from unicon.humanoid import HUMANOID
 from unicon.schedulers.keyboard.command import STAND, LocomotionCommand
 from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator, quat_from_rot6d
-from unicon.schedulers.pfnn.layout import OUTPUT_SIZE
+from unicon.schedulers.pfnn.layout import OUTPUT_SIZE, pack_output, unpack_output
 
 
 def generator(network=None) -> PoseGenerator:
@@ -82,6 +82,28 @@ def test_an_answer_that_is_not_finite_makes_it_stand_again_where_it_is():
     frames = [maker.step(LocomotionCommand((1.2, 0.0))) for _ in range(101)]
     assert maker.failures == 1
     assert np.isfinite(frames[-1].root_pos_w).all()
+    assert np.allclose(frames[99].root_pos_w[:2], frames[98].root_pos_w[:2])
+    assert np.allclose(frames[99].joint_pos, HUMANOID.rest_state().joint_pos)
+
+
+@pytest.mark.parametrize(
+    ("part", "value"),
+    [
+        ("root_rot6d_h", np.zeros(6)),
+        ("root_rot6d_h", np.array([1.0, 0, 0, 2.0, 0, 0])),
+        ("root_height", np.array([1e308])),
+    ],
+)
+def test_a_finite_answer_that_makes_no_pose_makes_it_stand_again_where_it_is(part, value):
+    class Useless(Steerable):
+        def predict(self, x, phase):
+            parts = unpack_output(super().predict(x, phase))
+            return pack_output({**parts, part: value} if self.asked == 100 else parts)
+
+    maker = generator(Useless())
+    frames = [maker.step(LocomotionCommand((1.2, 0.0))) for _ in range(130)]
+    assert maker.failures == 1
+    assert all(np.isfinite(values).all() for frame in frames for values in vars(frame).values())
     assert np.allclose(frames[99].root_pos_w[:2], frames[98].root_pos_w[:2])
     assert np.allclose(frames[99].joint_pos, HUMANOID.rest_state().joint_pos)
 

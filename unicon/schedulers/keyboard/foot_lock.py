@@ -40,7 +40,7 @@ class FootLockConfig:
     """A foot is held from when the network is so sure that it stands."""
     end: float = 0.4
     """And until it is no surer than this."""
-    largest_m: float = 0.12
+    largest_m: float = 0.10
     """No foot is shifted further."""
     creep_m_s: float = 0.012
     """Speed at which the shift of a standing foot goes back [m/s]."""

@@ -53,7 +53,7 @@ class PoseGenerator:
     def __init__(self, network: PoseNetwork, config: GeneratorConfig) -> None:
         self.network, self.config = network, config
         self.failures = 0
-        """How often the network's answer was not finite, and the character stood again."""
+        """How often the network's answer made no finite pose, and the character stood again."""
         self._begin(HUMANOID.rest_state())
 
     def _begin(self, state: CharacterState) -> None:
@@ -83,12 +83,20 @@ class PoseGenerator:
 
     def step(self, command: LocomotionCommand) -> CharacterState:
         """Make the next frame, and return it."""
-        self.path.steer(self.steering.steer(command, self.heading))
+        pos_w, heading = self.path.pos_w[HERE].copy(), self.heading
+        self.path.steer(self.steering.steer(command, heading))
         x = pack_input(self.path.samples(), observe(self.state, forward_kinematics(self.state)))
         y = self.network.predict(x, self.phase)
-        if not np.isfinite(y).all():
-            return self._stand_again()
-        parts = unpack_output(y)
+        # finite numbers may still make no rotation, or overflow
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            state = self._follow(unpack_output(y)) if np.isfinite(y).all() else None
+        if state is None or not all(np.isfinite(values).all() for values in vars(state).values()):
+            return self._stand_again(pos_w, heading)
+        self.state = state
+        return state
+
+    def _follow(self, parts: dict[str, np.ndarray]) -> CharacterState:
+        """Go on by the network's answer, and return the pose there."""
         amount = (1.0 - self.path.standing) ** _STAND_POWER
         turn = amount * float(parts["turn_rate"][0]) / RATE_HZ
         step_h = amount * parts["root_vel_h"] / RATE_HZ
@@ -99,8 +107,7 @@ class PoseGenerator:
         rate = max(float(parts["phase_rate"][0]), 0.0)
         self.phase = (self.phase + amount * rate / RATE_HZ) % (2.0 * np.pi)
         self.contacts = parts["contacts"]
-        self.state = self._pose(parts)
-        return self.state
+        return self._pose(parts)
 
     def _pose(self, parts: dict[str, np.ndarray]) -> CharacterState:
         """Return the pose of the network's answer where the path is now."""
@@ -119,9 +126,8 @@ class PoseGenerator:
             joint_vel=parts["joint_vel"].copy(),
         )
 
-    def _stand_again(self) -> CharacterState:
+    def _stand_again(self, pos_w: np.ndarray, heading: float) -> CharacterState:
         self.failures += 1
-        pos_w, heading = self.path.pos_w[HERE].copy(), self.heading
         self._begin(HUMANOID.rest_state())
         self.place(pos_w, heading)
         return self.state
