@@ -6,8 +6,9 @@ in between as the foot rolls over) makes no step:
     shift_t = shift_t-1 - (step of the point of contact as generated)
 
 The shift is no longer than ``largest_m``. While the foot stands it only creeps back, by ``creep_m_s``, so
-that nobody stands for long with feet pulled together; of a foot that was lifted it dies away. A standing foot is brought to the floor as well, and where a leg is too short for its foot the root
-sinks, both with a lag, so that nothing jerks:
+that nobody stands for long with feet pulled together; of a foot that was lifted it dies away. A standing
+foot is brought to the floor as well, and where a leg is too short for its foot the root sinks, both with a
+lag, so that nothing jerks:
 
     lift <- lift + (-height - lift) / (1 + 60 settle_s)
     drop <- drop + (what the leg lacks - drop) / (1 + 60 settle_s)
