@@ -64,12 +64,12 @@ class Sb3Environment(VecEnv):
         return [getattr(self, attr_name, None)] * self.num_envs
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Refuse."""
-        raise NotImplementedError
+        """Set an attribute of all environments."""
+        setattr(self, attr_name, value)
 
     def env_method(self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any) -> Sequence[Any]:
-        """Refuse."""
-        raise NotImplementedError
+        """Call a method of all environments."""
+        return [getattr(self, method_name)(*args, **kwargs)]
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
         """Say that nothing is wrapped."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -35,7 +36,7 @@ class Playing(NamedTuple):
     """Whether nothing plays or waits."""
 
 
-class TargetStreamNode(Node):
+class TargetStreamNode(Node, ABC):
     """A node that sends windows of target frames.
 
     Its table of parameters has ``source``.
@@ -57,13 +58,13 @@ class TargetStreamNode(Node):
         self._diagnostics = Diagnostics(self)
         self.create_timer(STATUS_PERIOD_S, self.publish_status)
 
+    @abstractmethod
     def next_frames(self, time_ns: int) -> Window:
         """Return the window of frames that begins one frame after ``time_ns``."""
-        raise NotImplementedError
 
+    @abstractmethod
     def playing(self) -> Playing:
         """Return what plays."""
-        raise NotImplementedError
 
     def facts(self) -> Mapping[str, object]:
         """Return more values for the diagnostics."""

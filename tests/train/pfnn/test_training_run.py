@@ -15,11 +15,11 @@ from unicon.errors import InputFileError, UniconError
 from unicon.schedulers.pfnn.network_file import find_network, read_network
 from unicon.train.pfnn import training_state
 from unicon.train.pfnn.network_facts import card_of_data
-from unicon.train.pfnn.stop_signals import StopSignals
 from unicon.train.pfnn.training import NetworkTrainer
 from unicon.train.pfnn.training_config import NetworkTrainingConfig
 from unicon.train.pfnn.training_run import NetworkTrainingRun
 from unicon.train.pfnn.training_state import STATE_FILE, read_state, write_state
+from unicon.train.runs.stop_signals import StopSignals
 
 CONFIG = NetworkTrainingConfig(minutes=0.0, steps=60, hidden=8, minibatch=16, judge_seconds=1e9)
 DATA = make_toy_data(takes=3, frames=60)

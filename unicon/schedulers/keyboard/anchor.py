@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from unicon import rotations
+from unicon.schedulers.keyboard.ground_plane import rotated
 from unicon.state import CharacterState
 
 
@@ -26,20 +27,15 @@ class Anchor:
 
     def to_world(self, pos: np.ndarray) -> np.ndarray:
         """Return the place in the world ``(2,)`` of one of the source ``(2,)``."""
-        return _rotation(self.turn) @ pos + np.array(self.offset_w)
+        return rotated(pos, self.turn) + np.array(self.offset_w)
 
     def to_source(self, pos_w: np.ndarray) -> np.ndarray:
         """Return the place of the source ``(2,)`` of one in the world ``(2,)``."""
-        return _rotation(-self.turn) @ (pos_w - np.array(self.offset_w))
+        return rotated(pos_w - np.array(self.offset_w), -self.turn)
 
 
 def anchor_between(sent: CharacterState, anchored: CharacterState) -> Anchor:
     """Return the anchor that turned a frame that was sent into what the executor followed."""
     turn = float(rotations.heading_angle(anchored.root_quat_w) - rotations.heading_angle(sent.root_quat_w))
-    offset = anchored.root_pos_w[:2] - _rotation(turn) @ sent.root_pos_w[:2]
+    offset = anchored.root_pos_w[:2] - rotated(sent.root_pos_w[:2], turn)
     return Anchor(turn, (float(offset[0]), float(offset[1])))
-
-
-def _rotation(angle: float) -> np.ndarray:
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([[cos, -sin], [sin, cos]])

@@ -21,6 +21,7 @@ from unicon.humanoid.kinematics import forward_kinematics
 from unicon.motion.clip_index import RATE_HZ
 from unicon.observation import observe
 from unicon.schedulers.keyboard.command import LocomotionCommand
+from unicon.schedulers.keyboard.ground_plane import rotated
 from unicon.schedulers.keyboard.path import HERE, PathConfig, SteeredPath
 from unicon.schedulers.keyboard.steering import Steering, SteeringConfig
 from unicon.schedulers.pfnn.layout import pack_input, unpack_output
@@ -101,8 +102,7 @@ class PoseGenerator:
         turn = amount * float(parts["turn_rate"][0]) / RATE_HZ
         step_h = amount * parts["root_vel_h"] / RATE_HZ
         self.steering.observe(step_h * RATE_HZ)
-        cos, sin = np.cos(self.heading), np.sin(self.heading)
-        step_w = np.array([cos * step_h[0] - sin * step_h[1], sin * step_h[0] + cos * step_h[1]])
+        step_w = rotated(step_h, self.heading)
         self.path.advance(step_w, turn, parts["path_pos_h"], parts["path_facing_h"])
         rate = max(float(parts["phase_rate"][0]), 0.0)
         self.phase = (self.phase + amount * rate / RATE_HZ) % (2.0 * np.pi)

@@ -18,6 +18,7 @@ import numpy as np
 
 from unicon.motion.clip_index import RATE_HZ
 from unicon.schedulers.keyboard.command import LocomotionCommand
+from unicon.schedulers.keyboard.ground_plane import rotated
 from unicon.schedulers.pfnn.layout import AHEAD, GAITS, PRESENT, SAMPLE_FRAMES, SAMPLES, PathSamples
 from unicon.schedulers.pfnn.pace import gaits_at
 
@@ -80,7 +81,7 @@ class SteeredPath:
         offset = self.pos_w[_SAMPLED] - self.pos_w[HERE]
         turn = self.heading[_SAMPLED] - self.heading[HERE]
         facing_h = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-        return PathSamples(_rotated(offset, -self.heading[HERE]), facing_h, self.gait[_SAMPLED])
+        return PathSamples(rotated(offset, -self.heading[HERE]), facing_h, self.gait[_SAMPLED])
 
     @property
     def standing(self) -> float:
@@ -107,13 +108,13 @@ class SteeredPath:
         )
         angle = np.unwrap(np.arctan2(ahead_h[:, 1], ahead_h[:, 0]))
         self.pos_w[HERE], self.heading[HERE] = pos_w, heading
-        self.pos_w[HERE + 1 :] = pos_w + _rotated(pos_h, heading)
+        self.pos_w[HERE + 1 :] = pos_w + rotated(pos_h, heading)
         self.heading[HERE + 1 :] = heading + _extended(frames, at, angle - angle[0])
 
     def place(self, pos_w: np.ndarray, heading: float) -> None:
         """Turn and shift all of it so that the present is there."""
         turn = heading - self.heading[HERE]
-        self.pos_w = np.asarray(pos_w) + _rotated(self.pos_w - self.pos_w[HERE], turn)
+        self.pos_w = np.asarray(pos_w) + rotated(self.pos_w - self.pos_w[HERE], turn)
         self.heading = self.heading + turn
 
     def _towards(self, facing: float, turning: np.ndarray) -> np.ndarray:
@@ -136,10 +137,3 @@ def _extended(frames: np.ndarray, at: np.ndarray, values: np.ndarray) -> np.ndar
     inside = np.interp(frames, at, values)
     slope = (values[-1] - values[-2]) / (at[-1] - at[-2])
     return np.where(frames > at[-1], values[-1] + slope * (frames - at[-1]), inside)
-
-
-def _rotated(vectors: np.ndarray, angle: float) -> np.ndarray:
-    """Return vectors ``(..., 2)`` turned counter-clockwise."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    x, y = vectors[..., 0], vectors[..., 1]
-    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)

@@ -15,11 +15,11 @@ from unicon.errors import UniconError
 from unicon.schedulers.pfnn.network_card import PhaseNetworkCard
 from unicon.schedulers.pfnn.network_file import WEIGHTS_FILE, save_network
 from unicon.train.pfnn.network_model_card import model_card
-from unicon.train.pfnn.stop_signals import StopSignals
 from unicon.train.pfnn.training import NetworkError, NetworkTrainer
 from unicon.train.pfnn.training_plots import PLOT_FILE, draw_training
 from unicon.train.pfnn.training_state import STATE_FILE, read_state, write_state
 from unicon.train.runs.metrics_log import MetricsLog
+from unicon.train.runs.stop_signals import StopSignals
 from unicon.train.specialists.state_file import write_in_one_step
 
 NETWORK_FOLDER = "pfnn"

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import signal
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -20,6 +18,7 @@ from unicon.train.learning.ppo import NotFiniteError
 from unicon.train.runs.checkpoint import checkpoints_of, read_checkpoint, write_checkpoint
 from unicon.train.runs.metrics_log import MetricsLog, row_of
 from unicon.train.runs.progress_line import ProgressLine
+from unicon.train.runs.stop_signals import StopSignals
 
 Evaluate = Callable[[Learner], Mapping[str, float]]
 """Judges the policy as it is, and returns scores for the log."""
@@ -69,7 +68,7 @@ class TrainingRun:
         self.seconds = 0.0
         """Spent training, evaluations left out."""
         self._evaluate = evaluate
-        self._stop = False
+        self._signals = StopSignals()
         found = checkpoints_of(folder)
         if found:
             self.seconds = read_checkpoint(found[-1], learner).seconds
@@ -105,7 +104,7 @@ class TrainingRun:
         quiet = self.console if world.leads else Console(quiet=True)
         done = 0
         try:
-            with self._signals(), ProgressLine(quiet, config.line_seconds) as line:
+            with self._signals, ProgressLine(quiet, config.line_seconds) as line:
                 while not self._is_over(done, iterations):
                     report = self._iterate()
                     done += 1
@@ -134,7 +133,7 @@ class TrainingRun:
 
     def _is_over(self, done: int, iterations: int | None) -> bool:
         """Return whether some process is to stop; all have to at once."""
-        mine = self._stop or self.progress >= 1.0 or (iterations is not None and done >= iterations)
+        mine = self._signals.asked or self.progress >= 1.0 or (iterations is not None and done >= iterations)
         return self.learner.world.any([mine])[0]
 
     def _iterate(self) -> IterationReport:
@@ -193,24 +192,3 @@ class TrainingRun:
         found = checkpoints_of(self.folder)
         last = f"the last good checkpoint is {found[-1]}" if found else "there is no checkpoint yet"
         return f"iteration {self.learner.iteration + 1}: {error} is not finite; {saved}; {last}"
-
-    @contextmanager
-    def _signals(self) -> Iterator[None]:
-        """End after the running iteration on SIGINT or SIGTERM; a second one ends at once."""
-
-        def stop(number: int, _: object) -> None:
-            if self._stop:
-                raise KeyboardInterrupt
-            self._stop = True
-
-        before = {}
-        try:
-            for number in (signal.SIGINT, signal.SIGTERM):
-                before[number] = signal.signal(number, stop)
-        except ValueError:
-            pass  # only the main thread may; elsewhere the caller's handling stands
-        try:
-            yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
