@@ -122,10 +122,15 @@ def time_network(network: PhaseNetwork) -> dict[str, dict[str, float]]:
 
 
 def figures(results: list[DriveResult]) -> dict[str, object]:
-    """Return the medians over the drives, and the stages of the first."""
+    """Return the medians over the drives, mean and worst of all their stages, and the stages of the first."""
+    stages = [stage for result in results for stage in result.stages]
+    velocity = [stage.velocity_error_percent for stage in stages if any(stage.commanded_h)]
+    heading = [stage.heading_error_deg for stage in stages]
     return {
         "velocity_error_percent": float(np.median([r.velocity_error_percent for r in results])),
+        "velocity_error_percent_mean_worst": (float(np.mean(velocity)), max(velocity)),
         "heading_error_deg": float(np.median([r.heading_error_deg for r in results])),
+        "heading_error_deg_mean_worst": (float(np.mean(heading)), max(heading)),
         "foot_slide_cm_s": float(np.median([r.slide_moving_cm_s for r in results])),
         "foot_slide_standing_cm_s": float(np.median([r.slide_standing_cm_s for r in results])),
         "stages": [stage._asdict() for stage in results[0].stages],
@@ -145,13 +150,14 @@ def run_drives(config: BenchConfig, console: Console) -> tuple[dict[str, object]
         if seed == 0:
             draw(config, drive.stages, actual, target, console)
     avatar = {"falls": sum(falls), "falls_of_each_drive": falls, **figures(avatars)}
-    locked = {"foot_slide_locked_cm_s": slide_with_foot_lock(card, network)}
+    slides = [slide_with_foot_lock(card, network, seed) for seed in range(config.seeds)]
+    locked = {"foot_slide_locked_cm_s": float(np.median(slides))}
     return {**locked, **figures(references)}, avatar
 
 
-def slide_with_foot_lock(card: PhaseNetworkCard, network: PhaseNetwork) -> float:
-    """Return the foot slide of the first drive's reference with feet held, while it moves [cm/s]."""
-    stages = scripted_drive(0)
+def slide_with_foot_lock(card: PhaseNetworkCard, network: PhaseNetwork, seed: int) -> float:
+    """Return the foot slide of a drive's reference with feet held, while it moves [cm/s]."""
+    stages = scripted_drive(seed)
     scheduler = KeyboardScheduler(network, card, KeyboardConfig(foot_lock=FootLockConfig()), 0)
     frames = []
     for tick in range(round(drive_seconds(stages) * RATE_HZ)):

@@ -12,11 +12,12 @@ pytest.importorskip("ament_index_python", reason="the stand-in reads the ament i
 
 STAND_IN = Path(__file__).resolve().parents[1] / "tools" / "bin" / "ros2"
 DEFINITION = "float64 height # [m]\n"
+GOAL = "string food\n---\nbool eaten\n---\nfloat64 share\n"
 
 
 @pytest.fixture
 def prefix(tmp_path: Path) -> Path:
-    """An ament prefix with the package `zoo`, its executable `feed` and its message `Animal`."""
+    """An ament prefix with the package `zoo`: the executable `feed`, message `Animal` and action `Feed`."""
     index = tmp_path / "share" / "ament_index" / "resource_index" / "packages"
     index.mkdir(parents=True)
     (index / "zoo").touch()
@@ -28,6 +29,9 @@ def prefix(tmp_path: Path) -> Path:
     message = tmp_path / "share" / "zoo" / "msg" / "Animal.msg"
     message.parent.mkdir(parents=True)
     message.write_text(DEFINITION)
+    action = tmp_path / "share" / "zoo" / "action" / "Feed.action"
+    action.parent.mkdir()
+    action.write_text(GOAL)
     return tmp_path
 
 
@@ -55,6 +59,7 @@ def test_packages_are_listed(prefix):
 
 def test_an_interface_is_shown_as_it_was_written(prefix):
     assert ros2(prefix, "interface", "show", "zoo/msg/Animal").stdout == DEFINITION
+    assert ros2(prefix, "interface", "show", "zoo/action/Feed").stdout == GOAL
 
 
 @pytest.mark.parametrize(

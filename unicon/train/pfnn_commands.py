@@ -95,6 +95,7 @@ class PfnnTrain:
         """Make the data and bring a trainer to where the run stands."""
         from unicon.motion.store.library import ClipLibrary
         from unicon.train.learning.compute import use_threads
+        from unicon.train.pfnn.data_report import write_report
         from unicon.train.pfnn.network_facts import card_of_data, training_in_words
         from unicon.train.pfnn.settings_file import save_settings
         from unicon.train.pfnn.training import NetworkError, NetworkTrainer
@@ -114,7 +115,10 @@ class PfnnTrain:
             words = training_in_words(settings.training, trainer.steps, seconds)
             return replace(base, training=words, held_out_error={**error.parts, "loss": error.loss})
 
-        return NetworkTrainingRun(trainer, self.out, console, describe)
+        run = NetworkTrainingRun(trainer, self.out, console, describe)
+        with console.status("measuring the data"):
+            write_report(run.network_folder, data)
+        return run
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,8 @@ from types import FrameType
 from typing import Protocol
 
 import rclpy
-from rclpy.executors import Executor, SingleThreadedExecutor
+from rclpy.executors import Executor
+from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
@@ -65,7 +66,7 @@ def run_node(make_node: Callable[[], RunnableNode], name: str) -> int:
     stop = StopFlag()
     node: RunnableNode | None = None
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    executor = SingleThreadedExecutor()
+    executor = EventsExecutor()
     try:
         node = make_node()
         assert isinstance(node, Node)

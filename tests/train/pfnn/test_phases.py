@@ -56,3 +56,10 @@ def test_the_phase_never_falls_and_standing_has_none():
     contact = rng.random((200, 2)) < 0.5
     assert np.all(np.diff(label_phases(contact)) >= 0.0)
     assert not label_phases(np.ones((50, 2), bool)).any()
+
+
+def test_a_foot_that_is_set_down_anew_at_once_makes_no_cycle():
+    contact = np.zeros((100, 2), dtype=bool)
+    contact[20:60, 0] = contact[70:, 0] = contact[40:80, 1] = True
+    contact[50:55, 1] = False  # the right foot taps
+    assert touch_downs(contact) == [(20, 0), (40, 1), (70, 0)]

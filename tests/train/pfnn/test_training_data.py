@@ -12,6 +12,7 @@ from unicon.motion.clip_index import ClipInfo
 from unicon.motion.store.library import ClipLibrary
 from unicon.motion.store.library_writer import LibraryWriter
 from unicon.schedulers.pfnn.layout import INPUT_SIZE, OUTPUT_SIZE, unpack_input, unpack_output
+from unicon.train.pfnn.manoeuvres import ManoeuvreMaker
 from unicon.train.pfnn.synthesis import plant, sequence
 from unicon.train.pfnn.takes import read_takes
 from unicon.train.pfnn.training_data import TrainingDataConfig, make_training_data, mirror, samples_of
@@ -46,7 +47,8 @@ def test_samples_have_the_layout_and_are_finite(data):
 
 
 def test_takes_are_bent_reversed_mirrored_and_held_out_by_clip(data):
-    assert {"standing", "walking", "backward"} == set(data.kinds)
+    assert {"standing", "walking", "backward", "sideways"} == set(data.kinds)
+    assert any("aside +40" in name for name in data.names)
     assert any("bent +50" in name for name in data.names)
     assert any("reversed" in name and name.endswith("mirrored") for name in data.names)
     held = {data.names[index] for index in np.unique(data.sequences[data.held_out])}
@@ -93,3 +95,19 @@ def test_the_shipped_table_can_be_read_and_a_wrong_one_is_named(tmp_path):
         InputFileError, match=r"takes\.yaml: there is no setting walkin; did you mean walking"
     ):
         read_takes(path)
+
+
+def test_clips_that_are_held_out_are_in_no_take_of_another(tmp_path):
+    with LibraryWriter(tmp_path) as writer:
+        standing, run = walker("010_acted", 14.0, 0.0, step=0.0), walker("jog", 2.5, 2.5)
+        for clip in (standing, walker("07_01", 2.5), walker("07_06", 2.5, 0.8, step=0.2), run):
+            writer.add(ClipInfo(clip.name, len(clip), "walking"), clip.frames)
+        writer.commit()
+    library = ClipLibrary(tmp_path)
+    for held_out, others in (((), 2), (("07_06",), 1)):
+        maker = ManoeuvreMaker(read_takes(), library, 0, held_out)
+        runs = [part for m in maker.all() if m.kind == "running" for part in m.parts[1:-1]]
+        assert (
+            len({float(part.joint_pos[5:30].std()) for part in runs if part.root_lin_vel_w[5, 0] < 1.5})
+            == others
+        )

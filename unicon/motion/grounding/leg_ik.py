@@ -76,13 +76,11 @@ def move_foot(joint_pos: np.ndarray, bodies: BodyKinematics, side: str, offset_w
     knee = _knee_angle(_within_reach(np.linalg.norm(new_w, axis=-1), np.linalg.norm(old_w, axis=-1)))
     straighten = _lean(joint_pos[:, leg.knee]) - _lean(knee)
     y_axis = np.array([0.0, 1.0, 0.0])
-    thigh = rotations.multiply(
-        _shortest_turn(old_w, new_w), rotations.from_matrix(bodies.rot_w[:, leg.thigh])
-    )
+    quat_w = rotations.from_matrix(bodies.rot_w[:, [0, leg.thigh, leg.foot]])
+    pelvis, thigh, foot = quat_w[:, 0], quat_w[:, 1], quat_w[:, 2]
+    thigh = rotations.multiply(_shortest_turn(old_w, new_w), thigh)
     thigh = rotations.multiply(thigh, rotations.from_axis_angle(y_axis, straighten))
     shin = rotations.multiply(thigh, rotations.from_axis_angle(y_axis, knee))
-    pelvis = rotations.from_matrix(bodies.rot_w[:, 0])
-    foot = rotations.from_matrix(bodies.rot_w[:, leg.foot])
     result = joint_pos.copy()
     result[:, leg.hip] = _hip_angles(_relative(pelvis, thigh), joint_pos[:, leg.hip])
     result[:, leg.knee] = knee

@@ -1,7 +1,7 @@
 """A scripted drive of two minutes: what a person does with the keys, at times that are known.
 
-Walk, turn by 90 and 180 degrees both ways, jog, stop, step sideways and backward. A seed varies all durations
-by up to 15 %, and which side comes first.
+Walk, turn by 90 and 180 degrees both ways, jog, stop, step sideways and backward. A seed varies the durations
+of all but the turns by up to 15 % against each other, and which side comes first.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from unicon.schedulers.keyboard.command import STAND, LocomotionCommand
 
 WALK_M_S, JOG_M_S, BACK_M_S, SIDE_M_S = 1.2, 2.2, 0.7, 0.5
 TURN_RAD_S = 0.9
+DRIVE_S = 120.0
 _VARIED = 0.15
 
 
@@ -72,10 +73,12 @@ def scripted_drive(seed: int = 0) -> list[Stage]:
         Stage("jog", 5.0, jog),
         Stage("stop", 5.0, STAND),
     ]
-    return [
-        stage if stage.name.startswith("turn") else stage._replace(seconds=_varied(stage.seconds, rng))
-        for stage in stages
+    varied = [
+        stage if _turns(stage) else stage._replace(seconds=_varied(stage.seconds, rng)) for stage in stages
     ]
+    turning = drive_seconds([stage for stage in varied if _turns(stage)])
+    stretch = (DRIVE_S - turning) / (drive_seconds(varied) - turning)
+    return [stage if _turns(stage) else stage._replace(seconds=stretch * stage.seconds) for stage in varied]
 
 
 def drive_seconds(stages: list[Stage]) -> float:
@@ -90,6 +93,11 @@ def command_at(stages: list[Stage], time_s: float) -> LocomotionCommand:
             return stage.command if time_s >= 0.0 else STAND
         time_s -= stage.seconds
     return STAND
+
+
+def _turns(stage: Stage) -> bool:
+    """Whether its angle says how long it takes; all turns are kept as they are."""
+    return stage.name.startswith("turn")
 
 
 def _varied(seconds: float, rng: np.random.Generator) -> float:

@@ -70,7 +70,10 @@ def _errors(card: PhaseNetworkCard) -> Iterator[str]:
 
 def _data(card: PhaseNetworkCard) -> Iterator[str]:
     yield from ("## Trained on", "", *(f"- {line}" for line in card.training_data), "")
-    yield from (f"{len(card.takes)} takes; their names are in pfnn.json.", "")
+    yield from (
+        f"{len(card.takes)} takes; their names are in pfnn.json, and what they show in [data.md](data.md).",
+        "",
+    )
 
 
 def _cautions() -> Iterator[str]:

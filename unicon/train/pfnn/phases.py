@@ -21,6 +21,8 @@ SLOWEST_STEP_S = 0.9
 """A step that takes longer begins with a rest."""
 NEAREST_S = 0.15
 """Two touch-downs are at least so far apart."""
+AGAIN_S = 0.45
+"""Two of the same foot with none of the other between them: sooner, the foot was only set down anew."""
 ROUND_FRAMES = 4.0
 STEP_S = 0.5
 """Duration of a step after a rest."""
@@ -35,7 +37,8 @@ def touch_downs(contact: np.ndarray) -> list[tuple[int, int]]:
     frames, feet = np.nonzero(contact[1:] & ~contact[:-1])
     events: list[tuple[int, int]] = []
     for frame, foot in sorted(zip(frames.tolist(), feet.tolist(), strict=True)):
-        if not events or frame + 1 - events[-1][0] >= NEAREST_S * RATE_HZ:
+        gap_s = (frame + 1 - events[-1][0]) / RATE_HZ if events else np.inf
+        if gap_s >= (AGAIN_S if events and events[-1][1] == foot else NEAREST_S):
             events.append((frame + 1, foot))
     return events
 

@@ -1,7 +1,8 @@
 """Takes that were never captured, made of those that were: bent, reversed, faster or slower, put together.
 
 - Bent: the heading is turned by the integral of a turn rate, and the root's velocity with it. The rate is
-  weighted by how fast the root goes: who stands does not turn without stepping.
+  weighted by how fast the root goes: who stands does not turn without stepping. Feet that stand do not turn
+  with the body (strides.py).
 - Reversed in time: a walk forward becomes one backward. Time-warped: as the dataset scheduler does.
 - Sequences: standing, one or more motions, standing again, joined as the stitching scheduler joins clips.
 - Calm upper body: arms and trunk that dribble or point are replaced by the mean of those of walks.
@@ -25,16 +26,15 @@ from unicon.motion.grounding.ground import GroundConfig, Grounded, ground
 from unicon.motion.grounding.root_scale import RootScaleConfig
 from unicon.schedulers.inertialization import begin_after
 from unicon.state import CharacterState, differentiate
+from unicon.train.pfnn.strides import hold_foot_yaw
 
 UPPER = np.array(
-    [
-        any(part in name for part in ("clavicle", "shoulder", "elbow", "wrist"))
-        for name in HUMANOID.joint_names
-    ]
+    [not any(part in name for part in ("hip", "knee", "ankle", "toe")) for name in HUMANOID.joint_names]
 )
 """Which hinges are those above the hips ``(35,)``."""
 _UNSCALED = GroundConfig(root_scale=RootScaleConfig(smallest=1.0, largest=1.0))
 _MOVING_M_S = 0.4
+_TURN_RAMP_S = 0.4
 
 
 def plant(frames: CharacterState) -> Grounded:
@@ -45,13 +45,29 @@ def plant(frames: CharacterState) -> Grounded:
 def bend(frames: CharacterState, turn_rate: float) -> CharacterState:
     """Return a motion ``(T,)`` along a path that turns by so much [rad/s] while it goes."""
     speed = gaussian_filter1d(np.linalg.norm(frames.root_lin_vel_w[:, :2], axis=-1), 8.0, mode="nearest")
-    rate = turn_rate * np.clip(speed / _MOVING_M_S, 0.0, 1.0)
+    return _turned(frames, turn_rate * np.clip(speed / _MOVING_M_S, 0.0, 1.0))
+
+
+def turn_round(frames: CharacterState, turn_rate: float) -> CharacterState:
+    """Return steps on the spot ``(T,)`` that turn by so much [rad/s], slower at both ends."""
+    times = np.arange(frames.batch_shape[0]) / RATE_HZ
+    ends = np.minimum(times, times[-1] - times) / _TURN_RAMP_S
+    return _turned(frames, turn_rate * np.clip(ends, 0.0, 1.0))
+
+
+def _turned(frames: CharacterState, rate: np.ndarray) -> CharacterState:
+    """Return a motion turned by the integral of a rate ``(T,)`` [rad/s], and its path with it."""
     turn = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]))]) / RATE_HZ
     heading = rotations.from_heading(turn)
     steps = np.diff(frames.root_pos_w, axis=0)
     steps = rotations.rotate(rotations.from_heading(0.5 * (turn[1:] + turn[:-1])), steps)
     pos_w = np.concatenate([frames.root_pos_w[:1], frames.root_pos_w[:1] + np.cumsum(steps, axis=0)])
-    turned = replace(frames, root_pos_w=pos_w, root_quat_w=rotations.multiply(heading, frames.root_quat_w))
+    turned = replace(
+        frames,
+        root_pos_w=pos_w,
+        root_quat_w=rotations.multiply(heading, frames.root_quat_w),
+        joint_pos=hold_foot_yaw(frames, turn),
+    )
     return _with_velocities(turned)
 
 

@@ -38,6 +38,7 @@ class TakeTable:
     walking: tuple[TakeEntry, ...]
     wandering: tuple[TakeEntry, ...]
     running: tuple[TakeEntry, ...]
+    stepping: tuple[TakeEntry, ...]
     backward: tuple[TakeEntry, ...]
     sideways: tuple[TakeEntry, ...]
     turning: tuple[TakeEntry, ...]
