@@ -2,7 +2,7 @@
 
 1. The network and a whole frame of the generator, timed one by one.
 2. The scripted drive of two minutes for several seeds: the reference alone, and the avatar in lockstep, which
-   is put back into its target when it falls.
+   is put back into its target when it falls; as the graph runs it, and open loop, with nothing fed back.
 3. The node in a graph: its share of a core while it is steered, and the time from a command to the first
    target frame that shows it.
 
@@ -15,7 +15,7 @@ import json
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -42,10 +42,11 @@ from unicon.schedulers.pfnn.network_file import find_network, read_network
 from unicon.state import CharacterState
 from unicon.target_frames import RawFrame, RawTargetFrames
 from unicon.tracking import TICK_NS, Tracker, TrackerConfig
-from unicon_bringup.graph import GraphConfig
+from unicon_bringup.graph import GraphConfig, default_list, read_list
 from unicon_bringup.session import GraphSession
 from unicon_msgs.msg import LocomotionCommand, TargetFrames
 from unicon_ros.qos import COMMAND, STREAM_SUBSCRIBER
+from unicon_schedulers.keyboard_node import PARAMETERS, config_of
 
 _REST_S = 1.5
 
@@ -56,7 +57,7 @@ class BenchConfig:
 
     network: str = "pfnn"
     """Name or folder of the network."""
-    policy: str = "walker"
+    policy: str = "tracker"
     """Name or folder of the avatar's policy."""
     seeds: int = 5
     """How many drives."""
@@ -70,10 +71,12 @@ class BenchConfig:
 class Drive:
     """One scripted drive: the reference's frames, and how the avatar followed them."""
 
-    def __init__(self, card: PhaseNetworkCard, network: PhaseNetwork, policy: str, seed: int) -> None:
+    def __init__(
+        self, card: PhaseNetworkCard, network: PhaseNetwork, policy: str, seed: int, config: KeyboardConfig
+    ) -> None:
         self.stages = scripted_drive(seed)
         self.count = round(drive_seconds(self.stages) * RATE_HZ)
-        self._scheduler = KeyboardScheduler(network, card, KeyboardConfig(), 0)
+        self._scheduler = KeyboardScheduler(network, card, config, 0)
         self._tracker = Tracker(TrackerConfig(policy=policy))
 
     def run(self) -> tuple[CharacterState, CharacterState, CharacterState, int]:
@@ -89,6 +92,7 @@ class Drive:
             refused = self._tracker.offer(message)
             assert refused is None, refused
             report = self._tracker.tick(time_ns)
+            self._scheduler.follow(report.actual, report.target, time_ns + TICK_NS)
             reference.append(window.frames[0])
             actual.append(report.actual)
             target.append(report.target)
@@ -121,6 +125,12 @@ def time_network(network: PhaseNetwork) -> dict[str, dict[str, float]]:
     return {"predict_ms": spread(predict), "frame_ms": spread(step)}
 
 
+def graph_config() -> KeyboardConfig:
+    """Return how the graph runs the scheduler."""
+    listed = next(entry.parameters for entry in read_list(default_list()) if entry.name == "keyboard")
+    return config_of({parameter.name: parameter.default for parameter in PARAMETERS} | dict(listed))
+
+
 def figures(results: list[DriveResult]) -> dict[str, object]:
     """Return the medians over the drives, mean and worst of all their stages, and the stages of the first."""
     stages = [stage for result in results for stage in result.stages]
@@ -137,33 +147,50 @@ def figures(results: list[DriveResult]) -> dict[str, object]:
     }
 
 
-def run_drives(config: BenchConfig, console: Console) -> tuple[dict[str, object], dict[str, object]]:
-    """Run all drives; return the figures of the reference and of the avatar."""
-    card, network = read_network(find_network(config.network))
-    references, avatars, falls = [], [], []
-    for seed in track(range(config.seeds), "drives", console=console):
-        drive = Drive(card, network, config.policy, seed)
-        reference, actual, target, fell = drive.run()
-        references.append(measure_drive(reference, drive.stages))
-        avatars.append(measure_drive(actual, drive.stages))
-        falls.append(fell)
-        if seed == 0:
-            draw(config, drive.stages, actual, target, console)
-    avatar = {"falls": sum(falls), "falls_of_each_drive": falls, **figures(avatars)}
-    slides = [slide_with_foot_lock(card, network, seed) for seed in range(config.seeds)]
-    locked = {"foot_slide_locked_cm_s": float(np.median(slides))}
-    return {**locked, **figures(references)}, avatar
+class Drives:
+    """All drives: the reference alone, and what became of the avatar that followed it."""
 
+    def __init__(self, config: BenchConfig, console: Console) -> None:
+        self._config, self._console = config, console
+        self._card, self._network = read_network(find_network(config.network))
 
-def slide_with_foot_lock(card: PhaseNetworkCard, network: PhaseNetwork, seed: int) -> float:
-    """Return the foot slide of a drive's reference with feet held, while it moves [cm/s]."""
-    stages = scripted_drive(seed)
-    scheduler = KeyboardScheduler(network, card, KeyboardConfig(foot_lock=FootLockConfig()), 0)
-    frames = []
-    for tick in range(round(drive_seconds(stages) * RATE_HZ)):
-        scheduler.command(command_at(stages, tick / RATE_HZ), tick * TICK_NS)
-        frames.append(scheduler.next_frames(tick * TICK_NS).frames[0])
-    return measure_drive(state.stack(frames), stages).slide_moving_cm_s
+    def run(self) -> dict[str, object]:
+        """Return the figures of the reference and of the avatar, as in the graph and open loop."""
+        closed = graph_config()
+        opened = replace(closed, feedback=0.0, wait_m=None)
+        references, seeds = [], range(self._config.seeds)
+        avatars: dict[str, list[DriveResult]] = {"avatar": [], "avatar_open_loop": []}
+        falls: dict[str, list[int]] = {name: [] for name in avatars}
+        for seed in track(seeds, "drives", console=self._console):
+            for name, scheduler in zip(avatars, (closed, opened), strict=True):
+                drive = Drive(self._card, self._network, self._config.policy, seed, scheduler)
+                reference, actual, target, fell = drive.run()
+                avatars[name].append(measure_drive(actual, drive.stages))
+                falls[name].append(fell)
+                if seed == 0 and name == "avatar":
+                    draw(self._config, drive.stages, actual, target, self._console)
+            references.append(measure_drive(reference, drive.stages))
+        free = [self._slide(seed, replace(opened, foot_lock=None)) for seed in seeds]
+        locked = [self._slide(seed, replace(opened, foot_lock=FootLockConfig())) for seed in seeds]
+        slides = {
+            "foot_slide_free_cm_s": float(np.median(free)),
+            "foot_slide_locked_cm_s": float(np.median(locked)),
+        }
+        found: dict[str, object] = {"reference": {**figures(references), **slides}}
+        for name, results in avatars.items():
+            counts = {"falls": sum(falls[name]), "falls_of_each_drive": falls[name]}
+            found[name] = {**counts, **figures(results)}
+        return found
+
+    def _slide(self, seed: int, config: KeyboardConfig) -> float:
+        """Return how far feet of the reference slide while it moves [cm/s]."""
+        stages = scripted_drive(seed)
+        scheduler = KeyboardScheduler(self._network, self._card, config, 0)
+        frames = []
+        for tick in range(round(drive_seconds(stages) * RATE_HZ)):
+            scheduler.command(command_at(stages, tick / RATE_HZ), tick * TICK_NS)
+            frames.append(scheduler.next_frames(tick * TICK_NS).frames[0])
+        return measure_drive(state.stack(frames), stages).slide_moving_cm_s
 
 
 def draw(
@@ -281,12 +308,11 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             found.update(measure_node(config, Path(folder)))
     found["policy"] = config.policy
-    found["reference"], found["avatar"] = run_drives(config, console)
-    config.out.write_text(json.dumps(found, indent=2) + "\n")
-    for part in ("reference", "avatar"):
-        shown = {key: value for key, value in found[part].items() if key != "stages"}  # type: ignore[attr-defined]
-        console.print(part, shown)
-    console.print({key: value for key, value in found.items() if key not in ("reference", "avatar")})
+    drives = Drives(config, console).run()
+    config.out.write_text(json.dumps({**found, **drives}, indent=2) + "\n")
+    for name, part in drives.items():
+        console.print(name, {key: value for key, value in part.items() if key != "stages"})  # type: ignore[attr-defined]
+    console.print(found)
     console.print(str(config.out))
 
 

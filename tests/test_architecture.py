@@ -37,6 +37,10 @@ def test_compose_has_a_service_for_every_node_of_the_list_and_no_other():
     for name, entry in GRAPH.items():
         assert nodes[name]["command"][:4] == ["ros2", "run", entry["package"], entry["executable"]]
         assert f"/{name}" in nodes[name]["healthcheck"]["test"][-1]
+        given = [word for word in nodes[name]["command"][4:] if ":=" in word and not word.startswith("__ns")]
+        assert given == [
+            f"{key}:={yaml.safe_dump(value).split()[0]}" for key, value in entry["parameters"].items()
+        ]
         assert services[name]["ipc"] == "host"
 
 

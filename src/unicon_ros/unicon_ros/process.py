@@ -13,8 +13,7 @@ from types import FrameType
 from typing import Protocol
 
 import rclpy
-from rclpy.executors import Executor
-from rclpy.experimental import EventsExecutor
+from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
@@ -66,7 +65,7 @@ def run_node(make_node: Callable[[], RunnableNode], name: str) -> int:
     stop = StopFlag()
     node: RunnableNode | None = None
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    executor = EventsExecutor()
+    executor = SingleThreadedExecutor()
     try:
         node = make_node()
         assert isinstance(node, Node)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.serialization import deserialize_message
@@ -45,10 +46,22 @@ PARAMETERS = (
     Parameter("foot_lock", False, "standing feet are held still, which the paper leaves off"),
     Parameter("source", "keyboard", "name under which the target frames are published"),
 )
-_STATES_APART = 6
-"""Open loop, one state in so many is decoded: it only tells where the frames lie in the world."""
+_STATES_APART, _STATES_APART_OPEN = 3, 6
+"""One state in so many is decoded, closed loop and open: decoding all would take longer than making frames."""
 _QUIET_S = 2.0
 """Between two complaints of the same kind."""
+
+
+def config_of(values: Mapping[str, Any]) -> KeyboardConfig:
+    """Return the scheduler's configuration by the node's parameters."""
+    stop_m = values["wait_m"]
+    return KeyboardConfig(
+        window=values["window"],
+        timeout_s=values["timeout_s"],
+        feedback=values["feedback"],
+        wait_m=(0.5 * stop_m, stop_m) if stop_m > 0.0 else None,
+        foot_lock=FootLockConfig() if values["foot_lock"] else None,
+    )
 
 
 class KeyboardNode(TargetStreamNode):
@@ -61,14 +74,7 @@ class KeyboardNode(TargetStreamNode):
     def __init__(self) -> None:
         super().__init__("keyboard", PARAMETERS)
         card, network = read_network(find_network(self.values["network"]))
-        stop_m = self.values["wait_m"]
-        config = KeyboardConfig(
-            window=self.values["window"],
-            timeout_s=self.values["timeout_s"],
-            feedback=self.values["feedback"],
-            wait_m=(0.5 * stop_m, stop_m) if stop_m > 0.0 else None,
-            foot_lock=FootLockConfig() if self.values["foot_lock"] else None,
-        )
+        config = config_of(self.values)
         self.scheduler = KeyboardScheduler(network, card, config, self.pacer.tick_time_ns)
         self._gamepad = GamepadProfile()
         self._rejected, self._clamped, self._gamepad_rests = 0, 0, True
@@ -141,10 +147,10 @@ class KeyboardNode(TargetStreamNode):
         self.get_logger().warning(f"rejected: {error}", throttle_duration_sec=_QUIET_S)
 
     def _on_raw_state(self, data: bytes) -> None:
-        """Take in every state where they are fed back, and otherwise a few a second: most are not decoded."""
+        """Take in some of the states a second, more where they are fed back: most are not decoded."""
         self._states += 1
         closed_loop = self.values["feedback"] > 0.0 or self.values["wait_m"] > 0.0
-        if closed_loop or self._states % _STATES_APART == 0:
+        if self._states % (_STATES_APART if closed_loop else _STATES_APART_OPEN) == 0:
             self._on_state(deserialize_message(data, CharacterStateMessage))
 
     def _on_state(self, message: CharacterStateMessage) -> None:

@@ -11,7 +11,7 @@ from unicon.humanoid import HUMANOID
 from unicon.humanoid.kinematics import forward_kinematics
 from unicon.motion.grounding.contact import Soles
 from unicon.schedulers.keyboard.foot_lock import FootLock, FootLockConfig
-from unicon.state import CharacterState, stack
+from unicon.state import CharacterState, move, stack
 
 BOTH, NONE = np.ones(4), np.zeros(4)
 REST = HUMANOID.rest_state()
@@ -49,6 +49,25 @@ def test_feet_in_the_air_are_left_alone():
     for k in range(10):
         frame = crouching(0.01 * k)
         assert np.allclose(lock.lock(frame, NONE).joint_pos, frame.joint_pos)
+
+
+def test_a_character_that_is_moved_takes_its_held_feet_along():
+    here, there = FootLock(FootLockConfig()), FootLock(FootLockConfig())
+    turn, before, after = 0.7, np.array([0.2, -0.1]), np.array([-0.4, 0.3])
+
+    def moved(frame: CharacterState) -> CharacterState:
+        back, on = (np.append(place, 0.0) for place in (-before, after))
+        return move(move(move(frame, np.array(0.0), back), np.array(turn), np.zeros(3)), np.array(0.0), on)
+
+    for k in range(10):
+        here.lock(crouching(0.004 * k), BOTH)
+        there.lock(crouching(0.004 * k), BOTH)
+    there.move(turn, before, after)
+    for k in range(10, 20):
+        expected = moved(here.lock(crouching(0.004 * k), BOTH))
+        locked = there.lock(moved(crouching(0.004 * k)), BOTH)
+        assert np.allclose(locked.joint_pos, expected.joint_pos, atol=1e-9)
+        assert np.allclose(locked.root_pos_w, expected.root_pos_w)
 
 
 def test_a_lifted_foot_comes_back_to_its_own_way():

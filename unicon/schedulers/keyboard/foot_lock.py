@@ -27,6 +27,7 @@ from unicon.humanoid.kinematics import BodyKinematics, forward_kinematics
 from unicon.motion.clip_index import RATE_HZ
 from unicon.motion.grounding.contact import Soles
 from unicon.motion.grounding.leg_ik import SIDES, leg_of, missing_reach, move_foot
+from unicon.schedulers.keyboard.ground_plane import rotated
 from unicon.state import CharacterState
 
 _LEAST_M = 5e-5
@@ -96,6 +97,19 @@ class FootLock:
         self._last, self._shift_w = None, np.zeros((2, 2))
         self._lift, self._drop = np.zeros(2), 0.0
         self._last_change = np.zeros(35)
+
+    def move(self, turn: float, before: np.ndarray, after: np.ndarray) -> None:
+        """Go along with a character that is turned and shifted: feet stay where they are against it.
+
+        Args:
+            turn: by how much [rad].
+            before: where its root was ``(2,)`` [m].
+            after: where it is then ``(2,)`` [m].
+        """
+        self._shift_w = rotated(self._shift_w, turn)
+        if self._last is not None:
+            points_w, weights = self._last
+            self._last = rotated(points_w - before, turn) + after, weights
 
     @property
     def _lag(self) -> float:

@@ -183,8 +183,11 @@ class KeyboardScheduler:
         if share <= 0.0:
             return
         generator = self.generator
-        pos_w = generator.state.root_pos_w[:2] + share * lag.offset
-        generator.place(pos_w, generator.heading + share * lag.turn)
+        before = generator.state.root_pos_w[:2].copy()
+        after = before + share * lag.offset
+        generator.place(after, generator.heading + share * lag.turn)
+        if self._foot_lock:
+            self._foot_lock.move(share * lag.turn, before, after)
         self._lag = Lag((1.0 - share) * lag.offset, (1.0 - share) * lag.turn)
 
 
