@@ -47,7 +47,7 @@ PARAMETERS = (
     Parameter("source", "keyboard", "name under which the target frames are published"),
 )
 _STATES_APART, _STATES_APART_OPEN = 3, 6
-"""One state in so many is decoded, closed loop and open: decoding all would take longer than making frames."""
+"""One state in so many is decoded, closed loop and open: all would take longer than making the frames."""
 _QUIET_S = 2.0
 """Between two complaints of the same kind."""
 
