@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,8 @@ class NodeEntry:
     role: str
     parameters: Mapping[str, Any] = field(default_factory=dict)
     """ROS parameters that differ from the node's defaults."""
+    executor: Mapping[str, Any] = field(default_factory=dict)
+    """Of a scheduler: ROS parameters of the executor that follows it."""
 
 
 @dataclass(frozen=True)
@@ -72,15 +74,17 @@ def read_list(path: Path) -> list[NodeEntry]:
 
 def _read_entry(path: Path, name: str, entry: Any) -> NodeEntry:
     expected = {"package", "executable", "role", "parameters"}
-    if not isinstance(entry, dict) or set(entry) != expected:
+    if not isinstance(entry, dict) or set(entry) - {"executor"} != expected:
         raise InputFileError(f"{path}: node {name!r} needs exactly the keys {sorted(expected)}")
     if entry["role"] not in ROLES:
         raise InputFileError(f"{path}: node {name!r} has the role {entry['role']!r}, not one of {ROLES}")
+    if "executor" in entry and entry["role"] != "scheduler":
+        raise InputFileError(f"{path}: node {name!r} has the key 'executor', which only schedulers may have")
     return NodeEntry(name=name, **entry)
 
 
 def choose_nodes(entries: list[NodeEntry], config: GraphConfig) -> list[NodeEntry]:
-    """Return the nodes to start.
+    """Return the nodes to start, the executor with what the chosen scheduler wants of it.
 
     Raises:
         UnknownNameError: when there is no such scheduler; the message lists those there are.
@@ -91,7 +95,9 @@ def choose_nodes(entries: list[NodeEntry], config: GraphConfig) -> list[NodeEntr
         hint = f" (did you mean {near[0]}?)" if near else ""
         known = ", ".join((*schedulers, NO_SCHEDULER))
         raise UnknownNameError(f"there is no scheduler {config.scheduler!r}{hint}; choose one of: {known}")
-    return [e for e in entries if _is_chosen(e, config)]
+    wanted = next((e.executor for e in entries if e.name == config.scheduler), {})
+    chosen = [e for e in entries if _is_chosen(e, config)]
+    return [replace(e, parameters={**e.parameters, **wanted}) if e.role == "executor" else e for e in chosen]
 
 
 def _is_chosen(entry: NodeEntry, config: GraphConfig) -> bool:
