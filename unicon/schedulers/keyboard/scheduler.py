@@ -6,7 +6,8 @@ two, a command shows in the second frame of the next message. A command that is 
 
 Nothing is fed back from the simulation unless asked for:
 
-    feedback    the generator's place and heading are drawn to the avatar's by this share in every frame
+    feedback    the generator's place and heading are drawn to the avatar's by this share in every frame while
+                it goes, and not while it stands
     wait_m      the commanded velocity falls from whole to nothing as the avatar lags from the first to the
                 second of these distances
 """
@@ -179,10 +180,11 @@ class KeyboardScheduler:
         return replace(command, velocity_h=(share * x, share * y))
 
     def _draw_to_avatar(self, lag: Lag) -> None:
-        share = self.config.feedback
+        generator = self.generator
+        # a reference that stands and still goes along with an avatar that leans would let it lean and fall
+        share = self.config.feedback * (1.0 - generator.path.standing)
         if share <= 0.0:
             return
-        generator = self.generator
         before = generator.state.root_pos_w[:2].copy()
         after = before + share * lag.offset
         generator.place(after, generator.heading + share * lag.turn)
