@@ -57,7 +57,7 @@ class BenchConfig:
 
     network: str = "pfnn"
     """Name or folder of the network."""
-    policy: str = "walker"
+    policy: str = "tracker"
     """Name or folder of the avatar's policy."""
     seeds: int = 5
     """How many drives."""

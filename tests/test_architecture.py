@@ -37,9 +37,10 @@ def test_compose_has_a_service_for_every_node_of_the_list_and_no_other():
     for name, entry in GRAPH.items():
         assert nodes[name]["command"][:4] == ["ros2", "run", entry["package"], entry["executable"]]
         assert f"/{name}" in nodes[name]["healthcheck"]["test"][-1]
-        listed = {"policy": "${POLICY:-tracker}"} if name == "executor" else entry["parameters"]
         given = [word for word in nodes[name]["command"][4:] if ":=" in word and not word.startswith("__ns")]
-        assert given == [f"{key}:={yaml.safe_dump(value).split()[0]}" for key, value in listed.items()]
+        assert given == [
+            f"{key}:={yaml.safe_dump(value).split()[0]}" for key, value in entry["parameters"].items()
+        ]
         assert services[name]["ipc"] == "host"
 
 
@@ -75,25 +76,6 @@ def test_an_unknown_scheduler_is_answered_with_those_there_are():
         graph.choose_nodes(entries, graph.GraphConfig(scheduler="stiching"))
     alone = graph.choose_nodes(entries, graph.GraphConfig(scheduler="none"))
     assert [entry.name for entry in alone] == ["executor"]
-    assert alone[0].parameters == {}
-
-
-def test_the_executor_gets_what_the_chosen_scheduler_wants_of_it():
-    graph = pytest.importorskip("unicon_bringup.graph", reason="no ROS workspace: source setup.bash")
-    entries = graph.read_list(ROOT / "src/unicon_bringup/config/graph.yaml")
-    executor, _ = graph.choose_nodes(entries, graph.GraphConfig(scheduler="keyboard"))
-    assert executor.parameters == {"policy": "walker"}
-    assert "policy:=walker" in graph.ros_arguments(executor, graph.GraphConfig())
-
-
-def test_only_a_scheduler_may_want_something_of_the_executor(tmp_path):
-    graph = pytest.importorskip("unicon_bringup.graph", reason="no ROS workspace: source setup.bash")
-    errors = pytest.importorskip("unicon.errors")
-    path = tmp_path / "graph.yaml"
-    node = {"package": "p", "executable": "e", "role": "recorder", "parameters": {}, "executor": {}}
-    path.write_text(yaml.safe_dump({"recorder": node}))
-    with pytest.raises(errors.InputFileError, match="'executor', which only schedulers may have"):
-        graph.read_list(path)
 
 
 TABLES = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -32,8 +32,6 @@ class NodeEntry:
     role: str
     parameters: Mapping[str, Any] = field(default_factory=dict)
     """ROS parameters that differ from the node's defaults."""
-    executor: Mapping[str, Any] = field(default_factory=dict)
-    """Of a scheduler: ROS parameters of the executor that follows it."""
 
 
 @dataclass(frozen=True)
@@ -74,17 +72,15 @@ def read_list(path: Path) -> list[NodeEntry]:
 
 def _read_entry(path: Path, name: str, entry: Any) -> NodeEntry:
     expected = {"package", "executable", "role", "parameters"}
-    if not isinstance(entry, dict) or set(entry) - {"executor"} != expected:
+    if not isinstance(entry, dict) or set(entry) != expected:
         raise InputFileError(f"{path}: node {name!r} needs exactly the keys {sorted(expected)}")
     if entry["role"] not in ROLES:
         raise InputFileError(f"{path}: node {name!r} has the role {entry['role']!r}, not one of {ROLES}")
-    if "executor" in entry and entry["role"] != "scheduler":
-        raise InputFileError(f"{path}: node {name!r} has the key 'executor', which only schedulers may have")
     return NodeEntry(name=name, **entry)
 
 
 def choose_nodes(entries: list[NodeEntry], config: GraphConfig) -> list[NodeEntry]:
-    """Return the nodes to start, the executor with what the chosen scheduler wants of it.
+    """Return the nodes to start.
 
     Raises:
         UnknownNameError: when there is no such scheduler; the message lists those there are.
@@ -95,9 +91,7 @@ def choose_nodes(entries: list[NodeEntry], config: GraphConfig) -> list[NodeEntr
         hint = f" (did you mean {near[0]}?)" if near else ""
         known = ", ".join((*schedulers, NO_SCHEDULER))
         raise UnknownNameError(f"there is no scheduler {config.scheduler!r}{hint}; choose one of: {known}")
-    wanted = next((e.executor for e in entries if e.name == config.scheduler), {})
-    chosen = [e for e in entries if _is_chosen(e, config)]
-    return [replace(e, parameters={**e.parameters, **wanted}) if e.role == "executor" else e for e in chosen]
+    return [e for e in entries if _is_chosen(e, config)]
 
 
 def _is_chosen(entry: NodeEntry, config: GraphConfig) -> bool:
