@@ -1,4 +1,4 @@
-"""`make demo`: twenty seconds of a live avatar, recorded, drawn and measured.
+"""`make demo`: half a minute of a live avatar, recorded, drawn and measured.
 
 Real motion capture goes through the real graph: the stitching node plays clips, the executor follows, the
 recorder records.
@@ -23,7 +23,6 @@ from unicon.render.gl import NoGLError
 from unicon.render.scene import Picture
 from unicon.render.show import RenderConfig, render
 from unicon.render.take import take_from_bag
-from unicon.schedulers.stitching import StitcherConfig
 from unicon_bringup.graph import GraphConfig
 from unicon_bringup.session import GraphSession
 
@@ -35,11 +34,11 @@ SHEET_PICTURE = Picture(480, 360)
 class DemoConfig:
     """What the demo plays, and where it leaves its results."""
 
-    motions: tuple[str, ...] = ("stand", "wave", "idle_shift", "jump", "stand")
+    motions: tuple[str, ...] = ("stand", "walk", "stand", "wave", "jump", "walk", "stand")
     """Motions to play, one after the other."""
-    seconds: float = 25.0
+    seconds: float = 32.0
     """How long the avatar lives."""
-    transition_s: float = StitcherConfig.transition_s
+    transition_s: float = 0.4
     """Length of the transition into each motion [s]."""
     avatar: str = "demo"
     """Namespace of the avatar."""
