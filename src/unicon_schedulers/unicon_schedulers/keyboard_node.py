@@ -35,7 +35,7 @@ PARAMETERS = (
     Parameter(
         "feedback",
         0.0,
-        "share of the distance to the simulated avatar that is made up in each frame while the reference goes",
+        "share of the distance to the avatar that is made up in each frame while the reference goes",
         "",
         0.0,
         1.0,
