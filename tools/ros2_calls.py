@@ -5,8 +5,10 @@ from __future__ import annotations
 import difflib
 import importlib
 import math
+import signal
 import time
 from collections.abc import Callable
+from types import FrameType
 from typing import Any
 
 import rclpy
@@ -115,7 +117,10 @@ class _Caller:
     """A node for the time of a call."""
 
     def __enter__(self) -> _Caller:
-        # with rclpy's own, Ctrl-C would end the context before a goal can be called back
+        # rclpy's own handler would end the context before a goal can be called back, and an exception that is
+        # raised in a callback of rclpy may be lost
+        self._interrupted = False
+        signal.signal(signal.SIGINT, self._interrupt)
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         self.node = Node("ros2_call")
         return self
@@ -124,10 +129,16 @@ class _Caller:
         self.node.destroy_node()
         rclpy.try_shutdown()
 
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        self._interrupted = True
+
     def until(self, done: Callable[[], object], why: str, patience_s: float) -> None:
         """Take messages until a condition holds."""
         deadline = time.monotonic() + patience_s
         while not done():
+            if self._interrupted:
+                self._interrupted = False
+                raise KeyboardInterrupt
             if time.monotonic() > deadline:
                 raise CallError(why)
             rclpy.spin_once(self.node, timeout_sec=0.05)

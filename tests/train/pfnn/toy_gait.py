@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from unicon.schedulers.pfnn.layout import (
@@ -16,18 +14,10 @@ from unicon.schedulers.pfnn.layout import (
     pack_input,
     pack_output,
 )
+from unicon.train.pfnn.training_data import TrainingData
 
 
-class ToyData(NamedTuple):
-    inputs: np.ndarray
-    outputs: np.ndarray
-    phases: np.ndarray
-    sequences: np.ndarray
-    names: tuple[str, ...]
-    held_out: np.ndarray
-
-
-def make_toy_data(takes: int = 4, frames: int = 300) -> ToyData:
+def make_toy_data(takes: int = 4, frames: int = 300) -> TrainingData:
     """Walks straight ahead, faster from take to take; the last take but one is held out."""
     rng = np.random.default_rng(1)
     directions = rng.standard_normal((2, 35))
@@ -40,13 +30,14 @@ def make_toy_data(takes: int = 4, frames: int = 300) -> ToyData:
         outputs.append(_outputs(phase[1:], speed, rate, directions))
         phases.append(phase[:-1])
     sequences = np.repeat(np.arange(takes), frames)
-    return ToyData(
+    return TrainingData(
         np.concatenate(inputs).astype(np.float32),
         np.concatenate(outputs).astype(np.float32),
         np.concatenate(phases).astype(np.float32),
         sequences,
         tuple(f"walk_{index}" for index in range(takes)),
         sequences == takes - 2,
+        ("walking",) * takes,
     )
 
 
