@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -33,7 +33,6 @@ from unicon.render.show import RenderConfig, render
 from unicon.render.take import Take
 from unicon.schedulers.keyboard.drive import Stage, command_at, drive_seconds, scripted_drive
 from unicon.schedulers.keyboard.drive_metrics import DriveResult, measure_drive
-from unicon.schedulers.keyboard.foot_lock import FootLockConfig
 from unicon.schedulers.keyboard.generator import GeneratorConfig, PoseGenerator
 from unicon.schedulers.keyboard.scheduler import KeyboardConfig, KeyboardScheduler
 from unicon.schedulers.pfnn.network import PhaseNetwork
@@ -44,11 +43,18 @@ from unicon.target_frames import RawFrame, RawTargetFrames
 from unicon.tracking import TICK_NS, Tracker, TrackerConfig
 from unicon_bringup.graph import GraphConfig, default_list, read_list
 from unicon_bringup.session import GraphSession
+from unicon_executor.parameters import PARAMETERS as EXECUTOR_PARAMETERS
 from unicon_msgs.msg import LocomotionCommand, TargetFrames
+from unicon_ros.parameters import Parameter
 from unicon_ros.qos import COMMAND, STREAM_SUBSCRIBER
 from unicon_schedulers.keyboard_node import PARAMETERS, config_of
 
 _REST_S = 1.5
+
+
+def defaults(table: Sequence[Parameter]) -> dict[str, object]:
+    """Return a node's parameters as they are where nothing is set."""
+    return {parameter.name: parameter.default for parameter in table}
 
 
 @dataclass(frozen=True)
@@ -57,7 +63,7 @@ class BenchConfig:
 
     network: str = "pfnn"
     """Name or folder of the network."""
-    policy: str = "tracker"
+    policy: str = str(defaults(EXECUTOR_PARAMETERS)["policy"])
     """Name or folder of the avatar's policy."""
     seeds: int = 5
     """How many drives."""
@@ -128,7 +134,7 @@ def time_network(network: PhaseNetwork) -> dict[str, dict[str, float]]:
 def graph_config() -> KeyboardConfig:
     """Return how the graph runs the scheduler."""
     listed = next(entry.parameters for entry in read_list(default_list()) if entry.name == "keyboard")
-    return config_of({parameter.name: parameter.default for parameter in PARAMETERS} | dict(listed))
+    return config_of(defaults(PARAMETERS) | dict(listed))
 
 
 def figures(results: list[DriveResult]) -> dict[str, object]:
@@ -171,12 +177,8 @@ class Drives:
                     draw(self._config, drive.stages, actual, target, self._console)
             references.append(measure_drive(reference, drive.stages))
         free = [self._slide(seed, replace(opened, foot_lock=None)) for seed in seeds]
-        locked = [self._slide(seed, replace(opened, foot_lock=FootLockConfig())) for seed in seeds]
-        slides = {
-            "foot_slide_free_cm_s": float(np.median(free)),
-            "foot_slide_locked_cm_s": float(np.median(locked)),
-        }
-        found: dict[str, object] = {"reference": {**figures(references), **slides}}
+        slide = {"foot_slide_free_cm_s": float(np.median(free))}
+        found: dict[str, object] = {"reference": {**figures(references), **slide}}
         for name, results in avatars.items():
             counts = {"falls": sum(falls[name]), "falls_of_each_drive": falls[name]}
             found[name] = {**counts, **figures(results)}

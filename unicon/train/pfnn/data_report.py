@@ -17,7 +17,7 @@ from unicon.motion.grounding.contact import Soles
 from unicon.schedulers.pfnn.layout import GAITS, PRESENT, unpack_input, unpack_output
 from unicon.state import differentiate
 from unicon.train.pfnn.training_data import TrainingData
-from unicon.train.specialists.state_file import write_in_one_step
+from unicon.train.runs.state_file import write_in_one_step
 
 REPORT_FILE = "data.md"
 MADE = {"reversed": "reversed", "aside": "aside", "on the spot": "on the spot", "strides": "short strides"}

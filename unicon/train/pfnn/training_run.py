@@ -19,8 +19,8 @@ from unicon.train.pfnn.training import NetworkError, NetworkTrainer
 from unicon.train.pfnn.training_plots import PLOT_FILE, draw_training
 from unicon.train.pfnn.training_state import STATE_FILE, read_state, write_state
 from unicon.train.runs.metrics_log import MetricsLog
+from unicon.train.runs.state_file import write_in_one_step
 from unicon.train.runs.stop_signals import StopSignals
-from unicon.train.specialists.state_file import write_in_one_step
 
 NETWORK_FOLDER = "pfnn"
 """Within the folder of a run: the network with its card and plot, as a folder of ``policies/`` holds it."""

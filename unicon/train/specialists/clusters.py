@@ -22,7 +22,7 @@ from unicon.errors import InputFileError
 from unicon.motion.catalogue.class_tree import ClassNode, class_tree
 from unicon.motion.clip_index import ClipInfo
 from unicon.train.runs.settings import build, plain
-from unicon.train.specialists.state_file import write_in_one_step
+from unicon.train.runs.state_file import write_in_one_step
 
 CLUSTERS_FILE = "clusters.yaml"
 GENERALIST = "generalist"

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from unicon.errors import InputFileError
 from unicon.train.runs.settings import build, plain
+from unicon.train.runs.state_file import write_in_one_step
 from unicon.train.specialists.clusters import Cluster, clusters_of, read_clusters, write_clusters
-from unicon.train.specialists.state_file import write_in_one_step
 
 PLAN_FILE = "plan.json"
 

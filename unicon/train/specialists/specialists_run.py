@@ -27,6 +27,7 @@ from unicon.motion.store.library import ClipLibrary
 from unicon.train.environment.dataset import choose_clips
 from unicon.train.runs.recipe import Recipe, recipe_text
 from unicon.train.runs.run_folder import CONFIG_FILE, open_run
+from unicon.train.runs.state_file import write_in_one_step
 from unicon.train.specialists import stage_recipes
 from unicon.train.specialists.budgets import (
     Budget,
@@ -38,7 +39,6 @@ from unicon.train.specialists.budgets import (
 from unicon.train.specialists.clusters import GENERALIST, Cluster, make_clusters, single_cluster
 from unicon.train.specialists.part_training import Part, measure_part, train_part
 from unicon.train.specialists.plan import StageResult, numbered, read_plan
-from unicon.train.specialists.state_file import write_in_one_step
 from unicon.train.specialists.student import Lessons, teach_student
 
 

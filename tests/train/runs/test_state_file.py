@@ -1,7 +1,7 @@
 import pytest
 
 from unicon.errors import UniconError
-from unicon.train.specialists.state_file import write_in_one_step
+from unicon.train.runs.state_file import write_in_one_step
 
 
 def test_a_file_is_replaced_and_nothing_is_left_beside_it(tmp_path):
