@@ -25,7 +25,8 @@ class Compare:
     """Names or files of recipes; +no-balancer, +no-failures, +no-variance-controller, +no-constraint or
     +no-rsis behind one leaves that out, and +ppo.epochs=1 changes a setting."""
     minutes: float = 30.0
-    """Budget of training time of each [min]."""
+    """Budget of each, in minutes of processor time summed over threads: other work on the machine does not
+    count."""
     dataset: str = "Walk"
     """Sub-dataset to learn and to be scored on: All, RunJumpWalk, Casual, SportDance, Animal or Walk."""
     library: Path | None = None

@@ -51,6 +51,29 @@ def test_who_stands_does_stand():
     assert not state.root_lin_vel_w.any()
 
 
+def test_a_network_that_jumps_into_a_run_is_played_slower_as_a_whole():
+    class Sprinter(Steerable):
+        def predict(self, x, phase):
+            parts = unpack_output(super().predict(x, phase))
+            parts["root_vel_h"] = np.array([2.4, 0.0])
+            parts["joint_vel"] = np.full(35, 3.0)
+            return pack_output(parts)
+
+    maker = generator(Sprinter())
+    command = LocomotionCommand((2.4, 0.0))
+    for frame in range(60):
+        before = maker.phase
+        state = maker.step(command)
+        speed = state.root_lin_vel_w[0]
+        assert speed <= 1.6 * frame / 60 + 0.25 + 1e-9
+        share = speed / 2.4
+        assert maker.phase - before == pytest.approx(share * 6.0 / 60)
+        assert state.joint_vel == pytest.approx(share * 3.0)
+    for _ in range(60):
+        state = maker.step(command)
+    assert state.root_lin_vel_w[0] == pytest.approx(2.4)
+
+
 def test_velocities_are_those_of_the_frames():
     maker = generator()
     frames = [maker.step(LocomotionCommand((1.0, 0.0), 0.5)) for _ in range(90)]

@@ -104,6 +104,15 @@ def test_a_budget_of_minutes_ends_it_as_well(tmp_path):
     assert run.seconds >= 0.06
 
 
+def test_the_processors_clock_counts_what_the_training_takes_and_no_waiting(tmp_path, monkeypatch):
+    spent = iter(range(100))
+    monkeypatch.setattr("time.process_time", lambda: float(next(spent)))
+    run = _run(tmp_path, million_samples=0.0, minutes=2.9 / 60.0, clock="processor")
+    assert run.train() == "finished"
+    assert run.learner.iteration == 3  # each is between two readings, a second apart
+    assert run.seconds == 3.0
+
+
 def test_without_a_budget_it_goes_on_until_it_is_stopped(tmp_path):
     run = _run(tmp_path, million_samples=0.0)
     assert run.left_s is None

@@ -136,6 +136,7 @@ def test_the_budget_is_the_same_for_all():
     settings = ComparisonConfig(minutes=30.0, dataset="All", jobs=1, curve_points=6).settings()
     recipe = comparison.read_candidate("paper", settings).recipe
     assert (recipe.run.minutes, recipe.run.million_samples, recipe.run.evaluate_minutes) == (30.0, 0.0, 5.0)
+    assert recipe.run.clock == "processor"
     assert recipe.dataset.name == "All"
 
 

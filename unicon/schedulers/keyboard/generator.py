@@ -22,6 +22,7 @@ from unicon.motion.clip_index import RATE_HZ
 from unicon.observation import observe
 from unicon.schedulers.keyboard.command import LocomotionCommand
 from unicon.schedulers.keyboard.ground_plane import rotated
+from unicon.schedulers.keyboard.pace_limit import PaceLimit, PaceLimitConfig
 from unicon.schedulers.keyboard.path import HERE, PathConfig, SteeredPath
 from unicon.schedulers.keyboard.steering import Steering, SteeringConfig
 from unicon.schedulers.pfnn.layout import pack_input, unpack_output
@@ -44,6 +45,7 @@ class GeneratorConfig:
 
     path: PathConfig = field(default_factory=PathConfig)
     steering: SteeringConfig = field(default_factory=SteeringConfig)
+    pace: PaceLimitConfig = field(default_factory=PaceLimitConfig)
     largest_turn: float = 2.0
     """Turn rate with which a facing that is asked for is approached [rad/s]."""
 
@@ -62,6 +64,7 @@ class PoseGenerator:
         self.state, self.phase, self.contacts = state, 0.0, np.zeros(4)
         self.path = SteeredPath(self.config.path, state.root_pos_w[:2], heading, self.config.largest_turn)
         self.steering = Steering(self.config.steering, heading)
+        self.pace = PaceLimit(self.config.pace)
 
     @property
     def heading(self) -> float:
@@ -99,6 +102,7 @@ class PoseGenerator:
     def _follow(self, parts: dict[str, np.ndarray]) -> CharacterState:
         """Go on by the network's answer, and return the pose there."""
         amount = (1.0 - self.path.standing) ** _STAND_POWER
+        amount *= self.pace.share(amount * float(np.linalg.norm(parts["root_vel_h"])))
         turn = amount * float(parts["turn_rate"][0]) / RATE_HZ
         step_h = amount * parts["root_vel_h"] / RATE_HZ
         self.steering.observe(step_h * RATE_HZ)
@@ -107,9 +111,9 @@ class PoseGenerator:
         rate = max(float(parts["phase_rate"][0]), 0.0)
         self.phase = (self.phase + amount * rate / RATE_HZ) % (2.0 * np.pi)
         self.contacts = parts["contacts"]
-        return self._pose(parts)
+        return self._pose(parts, amount)
 
-    def _pose(self, parts: dict[str, np.ndarray]) -> CharacterState:
+    def _pose(self, parts: dict[str, np.ndarray], amount: float) -> CharacterState:
         """Return the pose of the network's answer where the path is now."""
         last = self.state
         tilt = quat_from_rot6d(parts["root_rot6d_h"])
@@ -123,7 +127,7 @@ class PoseGenerator:
             root_lin_vel_w=(pos_w - last.root_pos_w) * RATE_HZ,
             root_ang_vel_w=rotations.to_rotation_vector(turn) * RATE_HZ,
             joint_pos=np.clip(parts["joint_pos"], HUMANOID.joint_lower, HUMANOID.joint_upper),
-            joint_vel=parts["joint_vel"].copy(),
+            joint_vel=amount * parts["joint_vel"],
         )
 
     def _stand_again(self, pos_w: np.ndarray, heading: float) -> CharacterState:

@@ -2,7 +2,8 @@
 
 Straight walks and runs are bent both ways, played at other speeds and, walks, reversed; walks also go with
 the body turned aside, and some with shorter strides and on the spot, turning. Side steps, steps backward and
-turns on the spot are there as captured, too, the first two also bent. All is between stretches of standing.
+turns on the spot are there as captured, too, the first two also bent. All is between stretches of standing,
+and leans into bends and into changes of speed.
 Names say what was made: ``07_01 bent +45 x0.85`` is the clip 07_01, bent by 45 degrees a second, at 0.85 of
 its speed.
 """
@@ -21,6 +22,7 @@ from unicon.motion.store.library import ClipLibrary
 from unicon.schedulers.dataset import at_speed
 from unicon.state import CharacterState
 from unicon.train.pfnn.cycles import loop
+from unicon.train.pfnn.leaning import lean
 from unicon.train.pfnn.strides import face_aside, shorten
 from unicon.train.pfnn.synthesis import bend, calm_upper, reverse, sequence, turn_round
 from unicon.train.pfnn.takes import TakeEntry, TakeTable, frames_of
@@ -67,7 +69,7 @@ class Manoeuvre(NamedTuple):
     def make(self) -> CharacterState:
         """Return its frames ``(T,)``."""
         path = sequence(self.parts, [self.transition_s] * (len(self.parts) - 1))
-        return bend(path, np.radians(self.bent_deg_s)) if self.bent_deg_s else path
+        return lean(bend(path, np.radians(self.bent_deg_s)) if self.bent_deg_s else path, self.parts)
 
 
 class ManoeuvreMaker:

@@ -39,7 +39,7 @@ _TURN_RAMP_S = 0.4
 
 def plant(frames: CharacterState) -> Grounded:
     """Return a motion ``(T,)`` with its feet held where they stand, and when they do."""
-    return ground(_with_velocities(frames), _UNSCALED)
+    return ground(with_velocities(frames), _UNSCALED)
 
 
 def bend(frames: CharacterState, turn_rate: float) -> CharacterState:
@@ -68,27 +68,28 @@ def _turned(frames: CharacterState, rate: np.ndarray) -> CharacterState:
         root_quat_w=rotations.multiply(heading, frames.root_quat_w),
         joint_pos=hold_foot_yaw(frames, turn),
     )
-    return _with_velocities(turned)
+    return with_velocities(turned)
 
 
 def reverse(frames: CharacterState) -> CharacterState:
     """Return a motion ``(T,)`` played backwards."""
-    return _with_velocities(frames[::-1])
+    return with_velocities(frames[::-1])
 
 
 def calm_upper(frames: CharacterState, pose: np.ndarray) -> CharacterState:
     """Return a motion ``(T,)`` with the hinges above the hips of a pose ``(35,)``."""
-    return _with_velocities(replace(frames, joint_pos=np.where(UPPER, pose, frames.joint_pos)))
+    return with_velocities(replace(frames, joint_pos=np.where(UPPER, pose, frames.joint_pos)))
 
 
 def sequence(parts: Sequence[CharacterState], transitions_s: Sequence[float]) -> CharacterState:
     """Return motions one after the other; the transitions are those into each but the first."""
     path = parts[0]
     for part, transition_s in zip(parts[1:], transitions_s, strict=True):
-        path = _with_velocities(state.concatenate([path, begin_after(part, path[-1], transition_s)]))
+        path = with_velocities(state.concatenate([path, begin_after(part, path[-1], transition_s)]))
     return path
 
 
-def _with_velocities(frames: CharacterState) -> CharacterState:
+def with_velocities(frames: CharacterState) -> CharacterState:
+    """Return a motion ``(T,)`` with the velocities of its poses."""
     quat = continuous_signs(frames.root_quat_w)
     return differentiate(frames.root_pos_w, quat, frames.joint_pos, RATE_HZ)

@@ -31,6 +31,9 @@ class RunConfig:
 
     minutes: float = 0.0
     """Budget of training time, evaluations left out [min]; 0: none."""
+    clock: Literal["wall", "processor"] = "wall"
+    """What all minutes of a run are: of the wall's clock, or of processor time summed over the threads, which
+    is the same however busy the machine is otherwise."""
     million_samples: float = 0.0
     """Budget of samples of all processes [1e6]; 0: none. With it alone a run can be repeated to the bit."""
     checkpoint_minutes: float = 3.0
@@ -65,8 +68,9 @@ class TrainingRun:
         """Begin, or go on from the newest checkpoint that the folder holds."""
         self.learner, self.folder, self.console = learner, folder, console
         self.config = learner.recipe.run
+        self._clock = time.process_time if self.config.clock == "processor" else time.monotonic
         self.seconds = 0.0
-        """Spent training, evaluations left out."""
+        """Spent training by the configured clock, evaluations left out."""
         self._evaluate = evaluate
         self._signals = StopSignals()
         found = checkpoints_of(folder)
@@ -137,14 +141,14 @@ class TrainingRun:
         return self.learner.world.any([mine])[0]
 
     def _iterate(self) -> IterationReport:
-        began = time.monotonic()
+        began = self._clock()
         try:
             # the schedule of the noise has to be the same in all processes
             progress = self.learner.world.mean(self.progress)
             report = self.learner.iterate(progress)
         except NotFiniteError as error:
             raise UniconError(self._keep_bad_batch(error)) from error
-        self.seconds += time.monotonic() - began
+        self.seconds += self._clock() - began
         return report
 
     def _save_and_evaluate(self, log: MetricsLog | None) -> None:

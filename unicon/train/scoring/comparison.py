@@ -48,7 +48,7 @@ class ComparisonConfig:
     """What is the same for all."""
 
     minutes: float
-    """Budget of training time of each [min]."""
+    """Budget of each: processor time of its training [core min]."""
     dataset: str
     """Sub-dataset that is learned and scored."""
     jobs: int
@@ -63,6 +63,7 @@ class ComparisonConfig:
         return (
             f"dataset.name={self.dataset}",
             f"run.minutes={self.minutes}",
+            "run.clock=processor",
             "run.million_samples=0",
             f"run.evaluate_minutes={self.minutes / self.curve_points}",
         )

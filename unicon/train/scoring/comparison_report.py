@@ -28,7 +28,7 @@ class CurvePoint(NamedTuple):
     """A policy while it learns."""
 
     minutes: float
-    """Of training."""
+    """Of training [core min]."""
     survival: float
     """Mean over some clips of the training, in MuJoCo."""
     success: float
@@ -41,6 +41,7 @@ class Outcome:
 
     name: str
     minutes: float
+    """Of training [core min]."""
     million_samples: float
     train: dict[str, float] | None
     """Figures by the names of ``ClipScores``; None where there was nothing to score."""
@@ -50,7 +51,7 @@ class Outcome:
 
     @property
     def samples_per_s(self) -> float:
-        """Speed of the training."""
+        """Speed of the training, of one core."""
         return 1e6 * self.million_samples / (60.0 * self.minutes) if self.minutes else math.nan
 
     def as_json(self) -> dict[str, Any]:
@@ -106,12 +107,12 @@ def write_report(out: Path, outcomes: Sequence[Outcome], dataset: str, minutes: 
     write_json(out / f"{NAME}.json", {**head, "runs": runs})
     _write(out / f"{NAME}.csv", _as_csv(outcomes))
     _write(out / f"{NAME}.md", _as_markdown(outcomes))
-    _draw(outcomes, f"{dataset}, {minutes:g} min each", out / f"{NAME}.png")
+    _draw(outcomes, f"{dataset}, {minutes:g} core min each", out / f"{NAME}.png")
 
 
 def _rows(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, ...]]:
     """Yield the headings, then a row of texts for each; scores are those of train / test."""
-    yield ("run", "min", "M samples", "samples/s", *(column.heading for column in COLUMNS))
+    yield ("run", "core min", "M samples", "samples/s", *(column.heading for column in COLUMNS))
     for outcome in outcomes:
         speed = f"{outcome.minutes:.1f}", f"{outcome.million_samples:.2f}", f"{outcome.samples_per_s:.0f}"
         sides = outcome.train, outcome.test
@@ -161,7 +162,7 @@ def _draw(outcomes: Sequence[Outcome], title: str, path: Path) -> None:
             values = [getattr(point, name) for point in outcome.curve]
             axes.plot([point.minutes for point in outcome.curve], values, marker=".", label=outcome.name)
         axes.set(
-            xlabel="training [min]", ylabel=f"{name} of clips of the training", ylim=(0, 1.02), xlim=(0, None)
+            xlabel="training [core min]", ylabel=f"{name} of clips of the training", ylim=(0, 1.02), xlim=(0, None)
         )
         axes.grid(alpha=0.3)
     figure.axes[0].legend(fontsize=8)
