@@ -17,7 +17,7 @@ from unicon.tool_commands import FetchCmu, MotionsExport, MotionsInspect, find_c
 from unicon.train.comparison_commands import Compare
 from unicon.train.evaluation_commands import Evaluate, Robustness
 from unicon.train.pfnn_commands import PfnnConvert, PfnnTrain
-from unicon.train.train_commands import Export, Train
+from unicon.train.train_commands import Average, Export, Train
 
 if TYPE_CHECKING:
     from unicon.render.take import Take
@@ -209,6 +209,7 @@ Command = (
     | Annotated[BagCommand, tyro.conf.subcommand("bag")]
     | Annotated[MotionsCommand, tyro.conf.subcommand("motions")]
     | Annotated[Train, tyro.conf.subcommand("train")]
+    | Annotated[Average, tyro.conf.subcommand("average")]
     | Annotated[Export, tyro.conf.subcommand("export")]
     | Annotated[PfnnCommand, tyro.conf.subcommand("pfnn")]
     | Annotated[Evaluate, tyro.conf.subcommand("evaluate")]

@@ -1,4 +1,4 @@
-"""`unicon train` and `unicon export`: torch is imported only when they are called."""
+"""`unicon train`, `unicon average` and `unicon export`: torch is imported only when they are called."""
 
 from __future__ import annotations
 
@@ -120,6 +120,27 @@ class Train:
         )
         next_step = f"; go on with: {go_on}" if stopped else f": {self.out}"
         console.print(f"{done}{next_step}", soft_wrap=True, highlight=False)
+        return 0
+
+
+@dataclass(frozen=True)
+class Average:
+    """Make a run whose networks are the mean of those of others that come from one another.
+
+    It is exported, or trained on with --init, as any run.
+    """
+
+    runs: Annotated[tuple[Path, ...], tyro.conf.Positional]
+    """Folders of two runs or more, or of their checkpoints; settings are those of the first."""
+    out: Path
+    """Folder of the run to write."""
+
+    def run(self, console: Console) -> int:
+        """Write the run and print where it is."""
+        from unicon.train.runs.averaging import average_runs
+
+        average_runs(self.runs, self.out)
+        console.print(str(self.out), soft_wrap=True)
         return 0
 
 

@@ -84,6 +84,22 @@ def write_checkpoint(folder: Path, learner: Learner, seconds: float, keep: int) 
     return final
 
 
+def write_networks(folder: Path, network: ActorCritic, numbers: CheckpointNumbers) -> Path:
+    """Write a checkpoint with networks alone: who goes on from it begins new episodes.
+
+    Raises:
+        UniconError: when it cannot be written.
+    """
+    path = folder / "checkpoints" / f"{numbers.iteration:08d}"
+    try:
+        path.mkdir(parents=True)
+        _save({f"{_NETWORK}{name}": value for name, value in network.state_dict().items()}, path / LEARNER_FILE)
+        (path / NUMBERS_FILE).write_text(json.dumps(asdict(numbers), indent=2) + "\n")
+    except (OSError, SafetensorError) as error:
+        raise UniconError(f"{path}: cannot be written ({_reason(error)})") from error
+    return path
+
+
 def read_checkpoint(path: Path, learner: Learner) -> CheckpointNumbers:
     """Bring a learner to where a checkpoint was made.
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import torch
 
 import unicon
-from unicon.errors import UniconError
+from unicon.errors import InputFileError, UniconError
 from unicon.train.runs.checkpoint import checkpoints_of
 from unicon.train.runs.recipe import Recipe, recipe_text
 
@@ -39,6 +39,20 @@ class RunFolder:
         """The newest checkpoint, if there is one."""
         found = checkpoints_of(self.path)
         return found[-1] if found else None
+
+
+def run_of(path: Path) -> Path:
+    """Return the folder of a run, given that or one of its checkpoints.
+
+    Raises:
+        InputFileError: when it is neither.
+    """
+    for folder in (path, *path.resolve().parents[1:2]):
+        if (folder / CONFIG_FILE).is_file():
+            return folder
+    raise InputFileError(
+        f"{path}: holds no {CONFIG_FILE}; expected the folder of a training run or of a checkpoint"
+    )
 
 
 def open_run(path: Path, recipe: Recipe, resume: bool) -> RunFolder:

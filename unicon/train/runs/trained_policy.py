@@ -19,7 +19,7 @@ from unicon.train.learning.learner import Learner
 from unicon.train.learning.networks import ActorCritic, export_weights
 from unicon.train.runs.checkpoint import CheckpointNumbers, read_networks
 from unicon.train.runs.recipe import Recipe, read_recipe
-from unicon.train.runs.run_folder import CONFIG_FILE
+from unicon.train.runs.run_folder import CONFIG_FILE, run_of
 from unicon.train.runs.training_run import Evaluate
 from unicon.train.scoring.evaluation import evaluate, summarise
 from unicon.train.scoring.evaluation_clips import ClipSource
@@ -58,7 +58,7 @@ def read_trained(path: Path, name: str) -> tuple[PolicyCard, PolicyWeights]:
         InputFileError: when the run's settings or its checkpoint cannot be read.
         UniconError: when it trains no policy, or one for comparisons only.
     """
-    folder = path if (path / CONFIG_FILE).is_file() else path.resolve().parents[1]
+    folder = run_of(path)
     recipe = read_recipe(folder / CONFIG_FILE)
     if recipe.specialists is not None:
         student = read_plan(folder).last_run
