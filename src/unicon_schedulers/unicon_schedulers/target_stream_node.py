@@ -21,9 +21,6 @@ from unicon_ros.process import StopFlag
 from unicon_ros.qos import LATCHED, STREAM
 
 STATUS_PERIOD_S = 1.0
-_LISTEN_S = 0.002
-"""So long before each window messages are taken in, all that have come since the last: none shows earlier, and
-waking for each would take as much of the processor as the frames."""
 
 
 class Playing(NamedTuple):
@@ -81,14 +78,12 @@ class TargetStreamNode(Node, ABC):
         self.pacer.resume()
         while not stop:
             remaining_s = self.pacer.remaining_s()
-            if remaining_s > _LISTEN_S:
-                time.sleep(remaining_s - _LISTEN_S)
-            elif remaining_s > 0:
+            if remaining_s > 0:
                 executor.spin_once(timeout_sec=remaining_s)
-            else:
-                self.pacer.begin()
-                self._send(self.pacer.tick_time_ns)
-                self.pacer.finish()
+                continue
+            self.pacer.begin()
+            self._send(self.pacer.tick_time_ns)
+            self.pacer.finish()
 
     def close(self) -> None:
         """Nothing is open."""

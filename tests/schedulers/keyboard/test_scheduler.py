@@ -10,7 +10,7 @@ from unicon import rotations, state
 from unicon.humanoid import HUMANOID
 from unicon.schedulers.keyboard.command import LocomotionCommand
 from unicon.schedulers.keyboard.go_to import Destination
-from unicon.schedulers.keyboard.scheduler import KeyboardConfig, KeyboardScheduler
+from unicon.schedulers.keyboard.scheduler import STANDING_LEASH_M, KeyboardConfig, KeyboardScheduler
 
 TICK_NS = 1_000_000_000 // 60
 FORWARD = LocomotionCommand((1.2, 0.0))
@@ -102,9 +102,20 @@ def test_with_feedback_a_reference_that_goes_is_drawn_to_the_avatar():
 def test_with_feedback_a_reference_that_stands_stays_where_it_is():
     made = scheduler(feedback=0.2)
     for tick in range(60):
-        follow(made, avatar_at([0.4, 0.3], 0.5), tick)
+        follow(made, avatar_at([0.2, 0.15], 0.5), tick)
         window = run(made, 1, first=tick)[0]
     assert np.allclose(window.frames.root_pos_w[0, :2], [0.0, 0.0], atol=0.01)
+
+
+def test_with_feedback_a_reference_that_stands_comes_after_an_avatar_as_far_as_the_leash():
+    made = scheduler(feedback=0.05)
+    for tick in range(240):
+        follow(made, avatar_at([0.6, 0.8], 0.5), tick)
+        window = run(made, 1, first=tick)[0]
+    # the avatar stands 1 m off in the direction (0.6, 0.8)
+    nearest = (1.0 - STANDING_LEASH_M) * np.array([0.6, 0.8])
+    assert np.allclose(window.frames.root_pos_w[0, :2], nearest, atol=0.01)
+    assert rotations.heading_angle(window.frames.root_quat_w[0]) == pytest.approx(0.0, abs=0.01)
 
 
 def test_it_waits_for_an_avatar_that_lags():

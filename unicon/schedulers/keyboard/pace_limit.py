@@ -1,8 +1,8 @@
 """Speeds up no faster than a body can: the network goes from a walk to a jog within a step.
 
 It learned both, and hardly a start of the one from the other. What is too fast is played slower as a whole,
-root, phase and pose, so that feet that stand do not slide. Within a step the root's speed goes up and down, so
-what is limited is its mean:
+root, phase and pose, so that feet that stand do not slide. Within a step the root's speed goes up and down,
+so what is limited is its mean:
 
     share <- min(1, (mean + play) / speed)
     mean  <- mean + min(acceleration / 60, (share speed - mean) / (60 smooth))

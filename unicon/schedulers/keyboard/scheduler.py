@@ -7,7 +7,7 @@ two, a command shows in the second frame of the next message. A command that is 
 Nothing is fed back from the simulation unless asked for:
 
     feedback    the generator's place and heading are drawn to the avatar's by this share in every frame while
-                it goes, and not while it stands
+                it goes; while it stands only by what is farther than a leash
     wait_m      the commanded velocity falls from whole to nothing as the avatar lags from the first to the
                 second of these distances
 """
@@ -32,6 +32,9 @@ from unicon.schedulers.pfnn.network_card import PhaseNetworkCard
 from unicon.schedulers.stitching import Window
 from unicon.state import CharacterState
 from unicon.target_frames import NS_PER_S
+
+STANDING_LEASH_M = 0.3
+"""With feedback, a reference that stands comes after an avatar that stands further off than this."""
 
 
 @dataclass(frozen=True)
@@ -180,17 +183,19 @@ class KeyboardScheduler:
         return replace(command, velocity_h=(share * x, share * y))
 
     def _draw_to_avatar(self, lag: Lag) -> None:
-        generator = self.generator
+        generator, standing = self.generator, self.generator.path.standing
         # a reference that stands and still goes along with an avatar that leans would let it lean and fall
-        share = self.config.feedback * (1.0 - generator.path.standing)
+        going = self.config.feedback * (1.0 - standing)
+        length = max(float(np.linalg.norm(lag.offset)), STANDING_LEASH_M)
+        share = going + self.config.feedback * standing * (1.0 - STANDING_LEASH_M / length)
         if share <= 0.0:
             return
         before = generator.state.root_pos_w[:2].copy()
         after = before + share * lag.offset
-        generator.place(after, generator.heading + share * lag.turn)
+        generator.place(after, generator.heading + going * lag.turn)
         if self._foot_lock:
-            self._foot_lock.move(share * lag.turn, before, after)
-        self._lag = Lag((1.0 - share) * lag.offset, (1.0 - share) * lag.turn)
+            self._foot_lock.move(going * lag.turn, before, after)
+        self._lag = Lag((1.0 - share) * lag.offset, (1.0 - going) * lag.turn)
 
 
 def _flat(pos_w: np.ndarray) -> np.ndarray:

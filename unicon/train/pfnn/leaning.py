@@ -19,8 +19,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from unicon import rotations
 from unicon.motion.clip_index import RATE_HZ
-from unicon.train.pfnn.synthesis import with_velocities
 from unicon.state import CharacterState
+from unicon.train.pfnn.synthesis import with_velocities
 
 GRAVITY_M_S2 = 9.81
 _SMOOTH_FRAMES = 12.0
@@ -28,7 +28,10 @@ _SMOOTH_FRAMES = 12.0
 
 
 def acceleration_h(frames: CharacterState) -> np.ndarray:
-    """Return how a motion ``(T,)`` accelerates along the ground but for its steps, as its root faces ``(T, 3)``."""
+    """Return how a motion ``(T,)`` accelerates along the ground but for its steps ``(T, 3)`` [m/s^2].
+
+    As its root faces: forward, left, 0.
+    """
     velocity_w = frames.root_lin_vel_w * np.array([1.0, 1.0, 0.0])
     smooth_w = gaussian_filter1d(velocity_w, _SMOOTH_FRAMES, axis=0, mode="nearest")
     return rotations.rotate(_to_heading(frames), np.gradient(smooth_w, 1.0 / RATE_HZ, axis=0))
@@ -42,9 +45,7 @@ def lean(frames: CharacterState, parts: Sequence[CharacterState]) -> CharacterSt
         parts: the captured motions, one after the other, together ``(T,)``.
     """
     captured_h = np.concatenate([acceleration_h(part) for part in parts])
-    added_w = rotations.rotate(
-        rotations.conjugate(_to_heading(frames)), acceleration_h(frames) - captured_h
-    )
+    added_w = rotations.rotate(rotations.conjugate(_to_heading(frames)), acceleration_h(frames) - captured_h)
     size = np.linalg.norm(added_w, axis=-1, keepdims=True)
     towards_w = added_w / np.maximum(size, 1e-9)
     axis_w = np.cross(np.array([0.0, 0.0, 1.0]), towards_w)

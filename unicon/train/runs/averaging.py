@@ -3,8 +3,9 @@
     theta = sum_i theta_i / n                (weights, and the normalisation of the input)
 
 PPO with a step that is held at a divergence goes on to move at random where it no longer gets better. Of
-networks that lie far apart on one path the mean keeps what they agree on, and loses much of the rest: it follows
-more clips than each of them (Wortsman et al. 2022, model soups). Networks of separate beginnings have no such mean.
+networks that lie far apart on one path the mean keeps what they agree on, and loses much of the rest: it
+follows more clips than each of them (Wortsman et al. 2022, model soups). Networks of separate beginnings have
+no such mean.
 """
 
 from __future__ import annotations

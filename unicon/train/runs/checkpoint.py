@@ -93,7 +93,9 @@ def write_networks(folder: Path, network: ActorCritic, numbers: CheckpointNumber
     path = folder / "checkpoints" / f"{numbers.iteration:08d}"
     try:
         path.mkdir(parents=True)
-        _save({f"{_NETWORK}{name}": value for name, value in network.state_dict().items()}, path / LEARNER_FILE)
+        _save(
+            {f"{_NETWORK}{name}": value for name, value in network.state_dict().items()}, path / LEARNER_FILE
+        )
         (path / NUMBERS_FILE).write_text(json.dumps(asdict(numbers), indent=2) + "\n")
     except (OSError, SafetensorError) as error:
         raise UniconError(f"{path}: cannot be written ({_reason(error)})") from error

@@ -162,7 +162,10 @@ def _draw(outcomes: Sequence[Outcome], title: str, path: Path) -> None:
             values = [getattr(point, name) for point in outcome.curve]
             axes.plot([point.minutes for point in outcome.curve], values, marker=".", label=outcome.name)
         axes.set(
-            xlabel="training [core min]", ylabel=f"{name} of clips of the training", ylim=(0, 1.02), xlim=(0, None)
+            xlabel="training [core min]",
+            ylabel=f"{name} of clips of the training",
+            ylim=(0, 1.02),
+            xlim=(0, None),
         )
         axes.grid(alpha=0.3)
     figure.axes[0].legend(fontsize=8)
