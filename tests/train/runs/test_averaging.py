@@ -8,14 +8,12 @@ import pytest
 import torch
 
 from unicon.errors import InputFileError, UniconError
-from unicon.humanoid import HUMANOID
-from unicon.train.environment.observation_variants import parse_variant
 from unicon.train.learning.networks import ActorCritic
 from unicon.train.runs.averaging import average_runs
 from unicon.train.runs.checkpoint import CheckpointNumbers, checkpoints_of, read_networks, write_networks
 from unicon.train.runs.recipe import read_recipe
 from unicon.train.runs.run_folder import open_run
-from unicon.train.runs.trained_policy import read_trained
+from unicon.train.runs.trained_policy import network_of, read_trained
 
 SMALL = ("network.actor_sizes=[16]", "network.critic_sizes=[16]")
 
@@ -23,8 +21,7 @@ SMALL = ("network.actor_sizes=[16]", "network.critic_sizes=[16]")
 def make_run(folder: Path, value: float, *changes: str) -> ActorCritic:
     """Write a run whose weights are all of one value."""
     recipe = read_recipe("laptop", (*SMALL, *changes))
-    size = parse_variant(recipe.environment.observation, recipe.environment.stride).size
-    network = ActorCritic(size, len(HUMANOID.joint_names), recipe.network)
+    network = network_of(recipe)
     with torch.no_grad():
         for parameter in network.parameters():
             parameter.fill_(value)

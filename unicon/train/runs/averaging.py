@@ -16,12 +16,10 @@ from pathlib import Path
 import torch
 
 from unicon.errors import UniconError
-from unicon.humanoid import HUMANOID
-from unicon.train.environment.observation_variants import parse_variant
-from unicon.train.learning.networks import ActorCritic
 from unicon.train.runs.checkpoint import CheckpointNumbers, read_networks, write_networks
 from unicon.train.runs.recipe import Recipe, read_recipe
 from unicon.train.runs.run_folder import CONFIG_FILE, open_run, run_of
+from unicon.train.runs.trained_policy import network_of
 
 
 def average_runs(runs: Sequence[Path], out: Path) -> None:
@@ -43,10 +41,10 @@ def average_runs(runs: Sequence[Path], out: Path) -> None:
     for run, recipe in zip(runs, recipes, strict=True):
         if _kind(recipe) != _kind(recipes[0]):
             raise UniconError(f"{run}: sees or does something else than {runs[0]}: {_kind(recipe)}")
-    networks = [_network(recipes[0]) for _ in runs]
+    networks = [network_of(recipes[0]) for _ in runs]
     numbers = [read_networks(run, network) for run, network in zip(runs, networks, strict=True)]
     states = [network.state_dict() for network in networks]
-    mean = _network(recipes[0])
+    mean = network_of(recipes[0])
     mean.load_state_dict({name: torch.stack([state[name] for state in states]).mean(0) for name in states[0]})
     open_run(out, recipes[0], resume=False)
     write_networks(out, mean, _sum(numbers))
@@ -55,11 +53,6 @@ def average_runs(runs: Sequence[Path], out: Path) -> None:
 def _kind(recipe: Recipe) -> tuple[object, ...]:
     config = recipe.environment
     return config.action, config.observation, config.stride, recipe.network.activation
-
-
-def _network(recipe: Recipe) -> ActorCritic:
-    size = parse_variant(recipe.environment.observation, recipe.environment.stride).size
-    return ActorCritic(size, len(HUMANOID.joint_names), recipe.network)
 
 
 def _sum(numbers: Sequence[CheckpointNumbers]) -> CheckpointNumbers:

@@ -93,9 +93,7 @@ def write_networks(folder: Path, network: ActorCritic, numbers: CheckpointNumber
     path = folder / "checkpoints" / f"{numbers.iteration:08d}"
     try:
         path.mkdir(parents=True)
-        _save(
-            {f"{_NETWORK}{name}": value for name, value in network.state_dict().items()}, path / LEARNER_FILE
-        )
+        _save(_network_tensors(network), path / LEARNER_FILE)
         (path / NUMBERS_FILE).write_text(json.dumps(asdict(numbers), indent=2) + "\n")
     except (OSError, SafetensorError) as error:
         raise UniconError(f"{path}: cannot be written ({_reason(error)})") from error
@@ -176,8 +174,12 @@ def _numbers(learner: Learner, seconds: float) -> CheckpointNumbers:
     )
 
 
+def _network_tensors(network: ActorCritic) -> dict[str, Tensor]:
+    return {f"{_NETWORK}{name}": value for name, value in network.state_dict().items()}
+
+
 def _learner_tensors(learner: Learner) -> dict[str, Tensor]:
-    tensors = {f"{_NETWORK}{name}": value for name, value in learner.network.state_dict().items()}
+    tensors = _network_tensors(learner.network)
     for name, parameter in learner.network.named_parameters():
         for kind, moment in learner.ppo.optimizer.state.get(parameter, {}).items():
             tensors[f"adam.{kind}.{name}"] = moment

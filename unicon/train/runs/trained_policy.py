@@ -51,6 +51,12 @@ def card_of(recipe: Recipe, name: str) -> PolicyCard:
     )
 
 
+def network_of(recipe: Recipe) -> ActorCritic:
+    """Return networks of the sizes that a recipe asks for, with new weights."""
+    size = parse_variant(recipe.environment.observation, recipe.environment.stride).size
+    return ActorCritic(size, len(HUMANOID.joint_names), recipe.network)
+
+
 def read_trained(path: Path, name: str) -> tuple[PolicyCard, PolicyWeights]:
     """Return the policy of a run or of a checkpoint; of a training by specialists, the newest student.
 
@@ -71,7 +77,7 @@ def read_trained(path: Path, name: str) -> tuple[PolicyCard, PolicyWeights]:
             "policy file can be made; it is for `unicon compare`"
         )
     card = card_of(recipe, name)
-    network = ActorCritic(card.input_size, len(HUMANOID.joint_names), recipe.network)
+    network = network_of(recipe)
     numbers = read_networks(path, network)
     card = PolicyCard(**{**vars(card), "training": _training(recipe, numbers)})
     return card, export_weights(network)

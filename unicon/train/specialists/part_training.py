@@ -11,17 +11,14 @@ from pathlib import Path
 
 from rich.console import Console
 
-from unicon.humanoid import HUMANOID
 from unicon.motion.store.library import ClipLibrary
 from unicon.train.environment.dataset import choose_clips
-from unicon.train.environment.observation_variants import parse_variant
 from unicon.train.environment.tracking_environment import TrackingEnvironment
 from unicon.train.learning.learner import Learner
-from unicon.train.learning.networks import ActorCritic
 from unicon.train.runs.checkpoint import checkpoints_of, read_networks
 from unicon.train.runs.recipe import Recipe
 from unicon.train.runs.run_folder import CONFIG_FILE, open_run
-from unicon.train.runs.trained_policy import make_evaluation
+from unicon.train.runs.trained_policy import make_evaluation, network_of
 from unicon.train.runs.training_run import TrainingRun
 from unicon.train.specialists.noisy_starts import NoisyStarts
 from unicon.train.specialists.plan import ClipResult, StageResult
@@ -92,8 +89,7 @@ def measure_part(part: Part) -> tuple[ClipResult, ...]:
         InputFileError: when the folder holds no checkpoint.
     """
     dataset = choose_clips(ClipLibrary(part.library), part.recipe.dataset)
-    size = parse_variant(part.recipe.environment.observation, part.recipe.environment.stride).size
-    network = ActorCritic(size, len(HUMANOID.joint_names), part.recipe.network)
+    network = network_of(part.recipe)
     read_networks(part.folder, network)
     return NoisyStarts(dataset, part.recipe.environment, part.noisy_starts).measure(network)
 
